@@ -1,0 +1,161 @@
+//! The files themselves: size, determinism, errors, textures, materials.
+
+use crate::scene::{car_scene, folder, street_scene};
+use street::StreetError;
+
+#[test]
+fn one_seed_gives_the_same_bytes() {
+    let again = street::street_glb(street::DEFAULT_SEED).expect("no file involved");
+    assert_eq!(again.len(), street_scene().bytes.len());
+    assert!(again == street_scene().bytes, "the street differs between two runs");
+    assert!(
+        street::car::glb().expect("no file involved") == car_scene().bytes,
+        "the car differs between two runs"
+    );
+    let other = street::street_glb(street::DEFAULT_SEED + 1).expect("no file involved");
+    assert!(other != street_scene().bytes, "the seed has no influence");
+}
+
+#[test]
+fn files_are_of_a_size_that_a_software_renderer_bears() {
+    let (street, car) = (street_scene(), car_scene());
+    assert!(
+        street.bytes.len() < 12 << 20,
+        "street.glb has {} bytes",
+        street.bytes.len()
+    );
+    assert!(car.bytes.len() < 1 << 20, "car.glb has {} bytes", car.bytes.len());
+    assert!(
+        (60_000..200_000).contains(&street.triangles.len()),
+        "{} triangles",
+        street.triangles.len()
+    );
+    assert!(
+        (4_000..20_000).contains(&car.triangles.len()),
+        "{} triangles",
+        car.triangles.len()
+    );
+    assert!(street.document.materials().len() <= 28);
+    let nodes_with_mesh = street.document.nodes().filter(|n| n.mesh().is_some()).count();
+    assert!(nodes_with_mesh <= 60, "{nodes_with_mesh} meshes to draw");
+}
+
+#[test]
+fn an_unwritable_folder_is_a_typed_error() {
+    let dir = folder("unwritable");
+    std::fs::create_dir_all(&dir).expect("own folder");
+    let file = dir.join("plain-file");
+    std::fs::write(&file, b"not a folder").expect("own file");
+    let inside = file.join("deeper");
+    match street::generate(&inside, 1) {
+        Err(e @ StreetError::Write { .. }) => assert!(e.to_string().contains("plain-file"), "{e}"),
+        other => panic!("expected a write error, got {other:?}"),
+    }
+    // A folder where the file should go: nothing half written stays behind.
+    std::fs::create_dir_all(dir.join(street::STREET_FILE).join("occupied")).expect("own folder");
+    assert!(matches!(street::generate(&dir, 1), Err(StreetError::Write { .. })));
+    let left: Vec<String> = std::fs::read_dir(&dir)
+        .expect("own folder")
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .collect();
+    assert!(left.iter().all(|n| !n.ends_with(".part")), "{left:?}");
+    std::fs::remove_dir_all(dir).expect("own folder");
+}
+
+#[test]
+fn every_normal_map_comes_with_tangents() {
+    let mut mapped = 0;
+    for scene in [street_scene(), car_scene()] {
+        for mesh in scene.document.meshes() {
+            for p in mesh.primitives() {
+                if p.material().normal_texture().is_some() {
+                    mapped += 1;
+                    assert!(p.get(&gltf::Semantic::Tangents).is_some(), "{:?}", p.material().name());
+                }
+            }
+        }
+    }
+    assert!(mapped > 15, "{mapped} primitives with a normal map");
+}
+
+/// Mean linear reflectance of a material's base colour.
+fn mean_albedo(name: &str) -> f32 {
+    let scene = street_scene();
+    let material = scene
+        .document
+        .materials()
+        .find(|m| m.name() == Some(name))
+        .expect("material");
+    let pbr = material.pbr_metallic_roughness();
+    let image = &scene.images[pbr.base_color_texture().expect("texture").texture().source().index()];
+    let linear = |byte: u8| {
+        let s = f32::from(byte) / 255.0;
+        if s <= 0.040_45 {
+            s / 12.92
+        } else {
+            ((s + 0.055) / 1.055).powf(2.4)
+        }
+    };
+    let factor = pbr.base_color_factor();
+    let n = image.pixels.len() as f32;
+    image
+        .pixels
+        .iter()
+        .enumerate()
+        .map(|(k, b)| linear(*b) * factor[k % 3])
+        .sum::<f32>()
+        / n
+}
+
+#[test]
+fn dry_surfaces_have_the_reflectance_of_what_they_are() {
+    let expect = [
+        ("asphalt", 0.09, 0.14),
+        ("slabs", 0.22, 0.38),
+        ("brick", 0.1, 0.25),
+        ("plaster-cream", 0.4, 0.6),
+        ("roof-tiles", 0.08, 0.2),
+        ("sandstone", 0.3, 0.5),
+        ("setts", 0.1, 0.3),
+    ];
+    for (name, low, high) in expect {
+        let a = mean_albedo(name);
+        assert!(a > low && a < high, "{name}: {a}");
+    }
+}
+
+#[test]
+fn lamps_carry_lights_in_candela() {
+    let scene = street_scene();
+    let lights = scene.json["extensions"]["KHR_lights_punctual"]["lights"]
+        .as_array()
+        .expect("lights");
+    assert_eq!(street::layout().lamps.len(), 8);
+    for lamp in street::layout().lamps {
+        let node = scene.node(&format!("{}-light", lamp.name));
+        let light = &lights[node.light.expect("a light")];
+        assert_eq!(light["type"], "spot");
+        let cd = light["intensity"].as_f64().expect("a number");
+        assert!((300.0..5000.0).contains(&cd), "{cd} cd");
+        let at = node.world.transform_point3(glam::Vec3::ZERO);
+        assert!(
+            at.distance(glam::Vec3::from(lamp.head())) < 0.15,
+            "{} at {at}",
+            lamp.name
+        );
+        let down = node.world.transform_vector3(glam::Vec3::NEG_Z);
+        assert!(down.y < -0.999, "{} shines along {down}", lamp.name);
+    }
+    let headlights = ["headlight-left", "headlight-right"].map(|n| car_scene().node(n));
+    for (node, side) in headlights.iter().zip([1.0_f32, -1.0]) {
+        assert!(node.light.is_some());
+        let along = node.world.transform_vector3(glam::Vec3::NEG_Z);
+        assert!(
+            along.z > 0.99 && along.y < -0.01 && along.y > -0.1,
+            "{} shines along {along}",
+            node.name
+        );
+        assert!(node.world.transform_point3(glam::Vec3::ZERO).x * side > 0.4);
+    }
+}

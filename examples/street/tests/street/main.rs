@@ -1,0 +1,7 @@
+//! The generated files, read back with the `gltf` crate and measured.
+
+mod car;
+mod files;
+mod geometry;
+mod places;
+mod scene;

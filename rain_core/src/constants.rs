@@ -1,0 +1,14 @@
+//! Physical constants: the only place where a number of nature is born.
+
+/// Standard gravity. Units: m/s².
+pub const GRAVITY: f64 = 9.806_65;
+/// Density of water at 20 °C. Units: kg/m³. Source: Kell 1975.
+pub const WATER_DENSITY: f64 = 998.2;
+/// Density of dry air at 20 °C and 101325 Pa. Units: kg/m³.
+pub const AIR_DENSITY: f64 = 1.2041;
+/// Sea-level pressure. Units: Pa.
+pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
+/// Refractive index of water at 589 nm. Units: none.
+pub const WATER_IOR: f64 = 1.333;
+/// 1 mm/h in m/s.
+pub const M_S_PER_MM_H: f64 = 1.0 / 3.6e6;

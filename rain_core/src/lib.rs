@@ -1,0 +1,13 @@
+//! Rain in physical units, as pure functions and plain state: no ECS, no GPU, no clock.
+//!
+//! One module per phenomenon. State and ledgers are `f64`, per drop and per texel values `f32`;
+//! SI units unless a name carries another one (`intensity_mm_h`, `diameter_mm`).
+//! Transcendental functions go through [`ops`], so the same input gives the same bits on every platform.
+
+pub mod constants;
+pub mod cover;
+pub mod error;
+pub mod hash;
+pub mod ops;
+pub mod rainfall;
+pub mod weather;

@@ -1,0 +1,67 @@
+//! The only caller of transcendental functions: `libm`, so that results are equal bit for bit on every platform.
+
+/// e^x.
+#[must_use]
+pub fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}
+/// e^x − 1 without cancellation.
+#[must_use]
+pub fn exp_m1(x: f64) -> f64 {
+    libm::expm1(x)
+}
+/// Natural logarithm.
+#[must_use]
+pub fn ln(x: f64) -> f64 {
+    libm::log(x)
+}
+/// ln(1 + x) without cancellation.
+#[must_use]
+pub fn ln_1p(x: f64) -> f64 {
+    libm::log1p(x)
+}
+/// x^y.
+#[must_use]
+pub fn pow(x: f64, y: f64) -> f64 {
+    libm::pow(x, y)
+}
+/// Cube root.
+#[must_use]
+pub fn cbrt(x: f64) -> f64 {
+    libm::cbrt(x)
+}
+/// Sine, x in radians.
+#[must_use]
+pub fn sin(x: f64) -> f64 {
+    libm::sin(x)
+}
+/// Cosine, x in radians.
+#[must_use]
+pub fn cos(x: f64) -> f64 {
+    libm::cos(x)
+}
+/// Tangent, x in radians.
+#[must_use]
+pub fn tan(x: f64) -> f64 {
+    libm::tan(x)
+}
+/// Angle of (x, y), radians in (−π, π].
+#[must_use]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+/// Square root (IEEE exact, so `std`'s is the same everywhere).
+#[must_use]
+pub fn sqrt(x: f64) -> f64 {
+    x.sqrt()
+}
+/// e^x in single precision.
+#[must_use]
+pub fn expf(x: f32) -> f32 {
+    libm::expf(x)
+}
+/// Natural logarithm in single precision.
+#[must_use]
+pub fn lnf(x: f32) -> f32 {
+    libm::logf(x)
+}

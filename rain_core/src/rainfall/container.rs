@@ -1,0 +1,396 @@
+//! The rain container: the part of the drop field that one view draws singly.
+//!
+//! It follows the eye, reaches further ahead when the eye moves fast, and is culled to the frustum twice: its lattice
+//! cells first, then each drop. How far a drop of diameter D is drawn is z_s(D) = min(κ z₁(D), cap): the level set of
+//! equal contrast, so every budget κ draws the drops that matter most.
+
+use glam::{DVec3, IVec3, Vec3, Vec4};
+
+use super::classes::{SizeClass, visible_range_m};
+use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_place, for_each_drop};
+use super::spectrum::Spectrum;
+use crate::hash::unit_f32;
+
+/// Nothing is drawn singly beyond this range. Units: m.
+pub const RANGE_CAP_M: f64 = 15.0;
+
+/// Drops fade out between 0.8 and this multiple of their range. Units: none.
+pub const FADE_END: f64 = 1.2;
+
+/// How far ahead the container reaches per m/s of the eye's speed. Units: s. Chosen by eye.
+pub const LEAD_TIME_S: f64 = 0.15;
+
+/// The container never reaches further ahead than this. Units: m.
+pub const LEAD_CAP_M: f64 = 8.0;
+
+/// Lattice coordinates relative to the eye's cell lie in [−512, 511].
+const CELL_BIAS: i32 = 512;
+
+/// A view as the container needs it. World metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RainViewVolume {
+    /// The eye.
+    pub eye_m: DVec3,
+    /// The eye's velocity. Units: m/s.
+    pub eye_velocity_m_s: DVec3,
+    /// Four side planes through the eye (inward unit normals, relative to the eye: n·x ≥ −w). `w` in metres.
+    pub side_planes: [Vec4; 4],
+    /// Focal length in pixels: half the height over tan of half the vertical field of view.
+    pub focal_px: f64,
+    /// Solid angle of the view. Units: sr.
+    pub solid_angle_sr: f64,
+    /// Shutter time. Units: s.
+    pub exposure_s: f64,
+}
+
+/// One drop to draw: 8 bytes. The GPU makes the rest again from the same hashes.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct DropRecord {
+    /// Cell relative to the eye's cell, 10 bits each for x, y, z, biased by 512.
+    pub cell: u32,
+    /// Class (4 bits), index in the cell (12 bits), presence (16 bits, unorm).
+    pub drop: u32,
+}
+
+/// How far each diameter is drawn: κ and the view's constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrawRange {
+    /// Quality κ: multiple of the one-step contrast range. Units: none.
+    pub kappa: f64,
+    /// Units: px.
+    pub focal_px: f64,
+    /// Units: s.
+    pub exposure_s: f64,
+}
+
+impl DrawRange {
+    /// z_s(D). `diameter_mm` in mm. Units: m.
+    #[must_use]
+    pub fn at(&self, diameter_mm: f64) -> f64 {
+        (self.kappa * visible_range_m(diameter_mm, self.focal_px, self.exposure_s)).min(RANGE_CAP_M)
+    }
+}
+
+/// Expected number of drops drawn at quality `kappa` (fade range included).
+#[must_use]
+pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) -> f64 {
+    let range = DrawRange {
+        kappa,
+        focal_px: view.focal_px,
+        exposure_s: view.exposure_s,
+    };
+    let mut sum = 0.0;
+    for class in SizeClass::all() {
+        // Two panels a class: the range changes by a third inside one.
+        for half in 0..2 {
+            let middle = 0.5 * (class.min_mm + class.max_mm);
+            let (a, b) = if half == 0 { (class.min_mm, middle) } else { (middle, class.max_mm) };
+            let reach = FADE_END * range.at(0.5 * (a + b));
+            sum += spectrum.moment(0, a, b) * view.solid_angle_sr / 3.0 * reach.powi(3);
+        }
+    }
+    sum
+}
+
+/// The quality κ at which a view draws `budget` drops, in [0, 64]; 64 when the budget is never reached.
+///
+/// Bisection on the class table; units: none.
+#[must_use]
+pub fn quality_for_budget(spectrum: &Spectrum, view: &RainViewVolume, budget: f64) -> f64 {
+    const MAX: f64 = 64.0;
+    if expected_drops(spectrum, view, MAX) <= budget {
+        return MAX;
+    }
+    let (mut low, mut high) = (0.0, MAX);
+    for _ in 0..50 {
+        let mid = 0.5 * (low + high);
+        if expected_drops(spectrum, view, mid) < budget {
+            low = mid;
+        } else {
+            high = mid;
+        }
+    }
+    low
+}
+
+/// Where each class's lattice stands for a view: what the GPU needs beside the records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClassPlacement {
+    /// The eye in the class's lattice.
+    pub eye: LatticeEye,
+    /// The class's velocity. Units: m/s.
+    pub velocity_m_s: Vec3,
+}
+
+/// The drops of one view and what is needed to place them. Kept between frames so that nothing is allocated.
+#[derive(Debug, Default, Clone)]
+pub struct Container {
+    /// Drops to draw, in class order.
+    pub records: Vec<DropRecord>,
+    /// One entry a class.
+    pub classes: Vec<ClassPlacement>,
+    /// Lattice cells visited and kept by the last [`Container::fill`].
+    pub cells_visited: usize,
+    /// Cells that reached into the view.
+    pub cells_kept: usize,
+}
+
+impl Container {
+    /// Fills the container for one view. At most `max_drops` records are written; a cut is reported by `false`.
+    #[must_use = "false says that drops were left out"]
+    pub fn fill(
+        &mut self,
+        seed: u64,
+        spectrum: &Spectrum,
+        motion: &FieldMotion,
+        view: &RainViewVolume,
+        kappa: f64,
+        max_drops: usize,
+    ) -> bool {
+        self.records.clear();
+        self.classes.clear();
+        (self.cells_visited, self.cells_kept) = (0, 0);
+        let range = DrawRange {
+            kappa,
+            focal_px: view.focal_px,
+            exposure_s: view.exposure_s,
+        };
+        let lead = (view.eye_velocity_m_s * LEAD_TIME_S).clamp_length_max(LEAD_CAP_M).as_vec3();
+        let mut complete = true;
+        for (k, class) in SizeClass::all().iter().enumerate() {
+            let placement = ClassPlacement {
+                eye: LatticeEye::new(view.eye_m, motion.offset_m[k], class.cell_m),
+                velocity_m_s: motion.velocity_m_s[k].as_vec3(),
+            };
+            self.classes.push(placement);
+            if spectrum.n0_per_m3_mm > 0.0 && kappa > 0.0 {
+                complete &= self.fill_class(seed, k, class, spectrum, &placement, view, &range, lead, max_drops);
+            }
+        }
+        complete
+    }
+
+    fn fill_class(
+        &mut self,
+        seed: u64,
+        k: usize,
+        class: &SizeClass,
+        spectrum: &Spectrum,
+        placement: &ClassPlacement,
+        view: &RainViewVolume,
+        range: &DrawRange,
+        lead: Vec3,
+        max_drops: usize,
+    ) -> bool {
+        let threshold = Threshold::new(class, spectrum);
+        let cell_m = class.cell_m as f32;
+        let reach = (FADE_END * range.at(class.max_mm)) as f32;
+        // A streak reaches back along its path relative to the eye for one exposure.
+        let relative = placement.velocity_m_s - view.eye_velocity_m_s.as_vec3();
+        let streak = relative.length() * view.exposure_s as f32;
+        let low = (lead.min(Vec3::ZERO) - reach) / cell_m + placement.eye.fraction;
+        let high = (lead.max(Vec3::ZERO) + reach) / cell_m + placement.eye.fraction;
+        let bound = IVec3::splat(CELL_BIAS);
+        let low = low.floor().as_ivec3().max(-bound);
+        let high = high.floor().as_ivec3().min(bound - 1);
+        let half = 0.5 * cell_m;
+        let cell_radius = half * 3.0_f32.sqrt();
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                for x in low.x..=high.x {
+                    self.cells_visited += 1;
+                    let cell = IVec3::new(x, y, z);
+                    let centre = (cell.as_vec3() - placement.eye.fraction) * cell_m + half;
+                    if !inside(&view.side_planes, centre, cell_radius + streak) {
+                        continue;
+                    }
+                    let nearest = (to_segment(centre, lead) - cell_radius).max(0.0);
+                    if nearest > reach {
+                        continue;
+                    }
+                    self.cells_kept += 1;
+                    let key = cell_key(seed, k as u32, placement.eye.cell.wrapping_add(cell));
+                    let corner = centre - half;
+                    let mut full = false;
+                    for_each_drop(class, key, threshold.scan_limit(), |index, drop| {
+                        let presence = threshold.presence(&drop);
+                        let position = corner + drop.position * cell_m;
+                        let drop_reach = (FADE_END * range.at(f64::from(drop.diameter_mm))) as f32;
+                        if presence <= 0.0
+                            || to_segment(position, lead) > drop_reach
+                            || !inside(&view.side_planes, position, streak + 0.01)
+                        {
+                            return;
+                        }
+                        if self.records.len() >= max_drops || index > 0xFFF {
+                            full = true;
+                            return;
+                        }
+                        let biased = cell + bound;
+                        self.records.push(DropRecord {
+                            cell: biased.x as u32 | (biased.y as u32) << 10 | (biased.z as u32) << 20,
+                            drop: k as u32 | index << 4 | ((presence * 65_535.0 + 0.5) as u32) << 16,
+                        });
+                    });
+                    if full {
+                        return false;
+                    }
+                }
+            }
+        }
+        true
+    }
+}
+
+impl DropRecord {
+    /// Position relative to the eye, metres: what the GPU computes from the record.
+    #[must_use]
+    pub fn position(&self, seed: u64, placement: &[ClassPlacement]) -> Vec3 {
+        let k = (self.drop & 15) as usize;
+        let class = &placement[k];
+        let cell = IVec3::new(
+            (self.cell & 1023) as i32,
+            (self.cell >> 10 & 1023) as i32,
+            (self.cell >> 20 & 1023) as i32,
+        ) - IVec3::splat(CELL_BIAS);
+        let key = cell_key(seed, k as u32, class.eye.cell.wrapping_add(cell));
+        let place = drop_place(key, self.drop >> 4 & 0xFFF);
+        let inside = Vec3::new(unit_f32(place[0]), unit_f32(place[1]), unit_f32(place[2]));
+        (cell.as_vec3() - class.eye.fraction + inside) * super::classes::CLASS_CELL_M[k] as f32
+    }
+}
+
+
+/// Distance from `p` to the segment from the eye (origin) to `lead`.
+fn to_segment(p: Vec3, lead: Vec3) -> f32 {
+    let square = lead.length_squared();
+    let t = if square > 0.0 { (p.dot(lead) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (p - lead * t).length()
+}
+
+fn inside(planes: &[Vec4; 4], p: Vec3, margin: f32) -> bool {
+    planes.iter().all(|plane| plane.truncate().dot(p) + plane.w >= -margin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rainfall::Distribution;
+
+    /// 60° vertical, 16:9, looking along −Z.
+    fn view() -> RainViewVolume {
+        let (ty, aspect) = (30.0_f32.to_radians().tan(), 16.0 / 9.0);
+        let tx = ty * aspect;
+        let plane = |n: Vec3| n.normalize().extend(0.0);
+        let ratio = f64::from(tx * ty) / (f64::from(1.0 + tx * tx) * f64::from(1.0 + ty * ty)).sqrt();
+        RainViewVolume {
+            eye_m: DVec3::new(12.3, 1.7, -4.5),
+            eye_velocity_m_s: DVec3::ZERO,
+            side_planes: [
+                plane(Vec3::new(1.0, 0.0, -tx)),
+                plane(Vec3::new(-1.0, 0.0, -tx)),
+                plane(Vec3::new(0.0, 1.0, -ty)),
+                plane(Vec3::new(0.0, -1.0, -ty)),
+            ],
+            focal_px: 623.5,
+            solid_angle_sr: 4.0 * ratio.asin(),
+            exposure_s: 1.0 / 60.0,
+        }
+    }
+
+    fn spectrum(r: f64) -> Spectrum {
+        Spectrum::new(Distribution::MarshallPalmer, r).unwrap()
+    }
+
+    #[test]
+    fn quality_matches_the_published_table() {
+        for (r, kappa) in [(5.0, 2.0), (25.0, 1.10), (100.0, 0.62)] {
+            let ours = quality_for_budget(&spectrum(r), &view(), 31_000.0);
+            assert!((ours / kappa - 1.0).abs() < 0.06, "R {r}: {ours}");
+        }
+    }
+
+    #[test]
+    fn the_container_holds_about_its_budget() {
+        let mut container = Container::default();
+        for r in [1.0, 5.0, 25.0, 100.0] {
+            let s = spectrum(r);
+            let kappa = quality_for_budget(&s, &view(), 30_000.0);
+            assert!(container.fill(1, &s, &FieldMotion::default(), &view(), kappa, 1 << 20));
+            let drawn = container.records.len() as f64;
+            let expected = expected_drops(&s, &view(), kappa);
+            // Streak margins at the frustum's sides add some.
+            assert!(drawn > 0.9 * expected && drawn < 1.45 * expected, "R {r}: {drawn} of {expected}");
+        }
+    }
+
+    #[test]
+    fn records_place_drops_inside_the_view_volume() {
+        let mut container = Container::default();
+        assert!(container.fill(5, &spectrum(25.0), &FieldMotion::default(), &view(), 1.1, 1 << 20));
+        assert!(container.records.len() > 10_000);
+        for record in &container.records {
+            let p = record.position(5, &container.classes);
+            assert!(p.length() < (FADE_END * RANGE_CAP_M) as f32 + 0.01);
+            assert!(inside(&view().side_planes, p, 0.3), "{p}");
+        }
+    }
+
+    #[test]
+    fn two_views_see_the_same_drops() {
+        let mut a = Container::default();
+        let mut b = Container::default();
+        let mut other = view();
+        other.eye_m += DVec3::new(0.4, 0.1, -0.3);
+        let motion = FieldMotion::default().after(1234.5);
+        assert!(a.fill(5, &spectrum(25.0), &motion, &view(), 1.1, 1 << 20));
+        assert!(b.fill(5, &spectrum(25.0), &motion, &other, 1.1, 1 << 20));
+        let world = |c: &Container, eye: DVec3| -> std::collections::BTreeSet<[i64; 3]> {
+            c.records
+                .iter()
+                .map(|r| {
+                    let p = r.position(5, &c.classes).as_dvec3() + eye;
+                    [p.x, p.y, p.z].map(|v| (v * 2000.0).round() as i64)
+                })
+                .collect()
+        };
+        let (wa, wb) = (world(&a, view().eye_m), world(&b, other.eye_m));
+        let near = |set: &std::collections::BTreeSet<[i64; 3]>, p: &[i64; 3]| {
+            (-1..=1).any(|x| (-1..=1).any(|y| (-1..=1).any(|z| set.contains(&[p[0] + x, p[1] + y, p[2] + z]))))
+        };
+        let shared = wa.iter().filter(|p| near(&wb, p)).count();
+        // The volumes overlap but for a rim of 0.5 m.
+        assert!(shared * 10 > wa.len() * 7, "{shared} of {}", wa.len());
+    }
+
+    #[test]
+    fn a_fast_eye_sees_further_ahead_and_loses_nothing() {
+        let mut still = Container::default();
+        let mut fast = Container::default();
+        let mut moving = view();
+        moving.eye_velocity_m_s = DVec3::new(0.0, 0.0, -36.0);
+        assert!(still.fill(5, &spectrum(25.0), &FieldMotion::default(), &view(), 0.6, 1 << 20));
+        assert!(fast.fill(5, &spectrum(25.0), &FieldMotion::default(), &moving, 0.6, 1 << 20));
+        let furthest = |c: &Container| {
+            c.records.iter().map(|r| -r.position(5, &c.classes).z).fold(0.0, f32::max)
+        };
+        assert!(furthest(&fast) > furthest(&still) + 3.0);
+        let all: std::collections::BTreeSet<(u32, u32)> = fast.records.iter().map(|r| (r.cell, r.drop)).collect();
+        assert!(still.records.iter().all(|r| all.contains(&(r.cell, r.drop))));
+    }
+
+    #[test]
+    fn a_cut_is_reported() {
+        let mut container = Container::default();
+        assert!(!container.fill(5, &spectrum(100.0), &FieldMotion::default(), &view(), 1.0, 1000));
+        assert_eq!(container.records.len(), 1000);
+    }
+
+    #[test]
+    fn dry_fills_nothing() {
+        let mut container = Container::default();
+        assert!(container.fill(5, &spectrum(0.0), &FieldMotion::default(), &view(), 1.0, 1000));
+        assert!(container.records.is_empty());
+    }
+}

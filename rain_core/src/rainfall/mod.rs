@@ -1,0 +1,18 @@
+//! Falling rain: size spectrum, fall speed, the frozen drop field and the container that follows a view.
+
+mod classes;
+mod container;
+mod field;
+mod spectrum;
+mod terminal_velocity;
+
+pub use classes::{CLASS_CELL_M, CLASS_COUNT, CLASS_EDGES_MM, CLASS_SPEEDS_M_S, SizeClass, visible_range_m};
+pub use container::{
+    ClassPlacement, Container, DrawRange, DropRecord, FADE_END, LEAD_CAP_M, LEAD_TIME_S, RANGE_CAP_M, RainViewVolume,
+    expected_drops, quality_for_budget,
+};
+pub use field::{
+    Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop,
+};
+pub use spectrum::{Distribution, MAX_INTENSITY_MM_H, Spectrum};
+pub use terminal_velocity::{MAX_FITTED_DIAMETER_MM, density_factor, terminal_velocity};

@@ -1,0 +1,73 @@
+//! Rain as components and systems of an ECS, with no renderer.
+//!
+//! [`RainEcsPlugin`] adds everything; each phenomenon is also a plugin of its own. State advances in the [`RainTick`]
+//! schedule, which [`RainClockPlugin`] runs in fixed ticks of the virtual time, so any frame rate ends in the same
+//! state, bit for bit ([`state_hash()`]).
+//!
+//! ```
+//! use bevy_app::App;
+//! use bevy_time::TimePlugin;
+//! use rain_ecs::prelude::*;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((TimePlugin, RainEcsPlugin::default()));
+//! app.world_mut().spawn(Weather::preset(WeatherPreset::HeavyRain));
+//! app.update();
+//! ```
+
+pub mod clock;
+pub mod error;
+pub mod rainfall;
+pub mod schedule;
+pub mod seed;
+pub mod state_hash;
+pub mod weather;
+
+use bevy_app::{App, Plugin};
+
+pub use clock::{RainClock, RainClockPlugin};
+pub use error::RainConfigError;
+pub use rainfall::{RainfallField, RainfallFieldPlugin};
+pub use schedule::{RainSystems, RainTick};
+pub use seed::RainSeed;
+pub use state_hash::state_hash;
+pub use weather::WeatherPlugin;
+
+/// What an application usually names.
+pub mod prelude {
+    pub use crate::RainEcsPlugin;
+    pub use crate::clock::{RainClock, RainClockPlugin};
+    pub use crate::error::RainConfigError;
+    pub use crate::rainfall::{RainfallField, RainfallFieldPlugin};
+    pub use crate::schedule::{RainSystems, RainTick};
+    pub use crate::seed::RainSeed;
+    pub use crate::state_hash::{HashState, StateHashAppExt, StateHasher, state_hash};
+    pub use crate::weather::{
+        ActiveWeather, ArtistControls, Weather, WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState,
+        WeatherTimeline,
+    };
+    pub use rain_core::rainfall::Distribution;
+    pub use rain_core::weather::{ArtistSettings, SurfaceClass, Timeline, WeatherConditions, WeatherPreset};
+}
+
+/// Every plugin of this crate: the clock and all phenomena.
+///
+/// The application brings `bevy_time::TimePlugin` (part of Bevy's default and minimal plugins); without it time
+/// stands still.
+#[derive(Debug, Clone, Default)]
+pub struct RainEcsPlugin {
+    /// Tick length and fast-forward bound. Default: 1/32 s, 256 ticks.
+    pub clock: RainClock,
+}
+
+impl Plugin for RainEcsPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins((
+            RainClockPlugin {
+                clock: self.clock.clone(),
+            },
+            WeatherPlugin,
+            RainfallFieldPlugin,
+        ));
+    }
+}

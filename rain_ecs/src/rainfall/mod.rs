@@ -1,0 +1,137 @@
+//! The drop field's state: what falls, how fast each size class moves, and how far it has moved.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_math::DVec3;
+use rain_core::constants::AIR_DENSITY;
+use rain_core::rainfall::{Distribution, FieldMotion, Spectrum};
+use rain_core::weather::WeatherConditions;
+
+use crate::clock::RainClock;
+use crate::schedule::{RainSystems, RainTick};
+use crate::state_hash::{HashState, StateHashAppExt, StateHasher};
+use crate::weather::{ActiveWeather, WeatherState};
+
+/// What falls, everywhere: areas change only the intensity.
+#[derive(Resource, Debug, Clone, Copy, PartialEq)]
+pub struct RainfallField {
+    motion: FieldMotion,
+    spectrum: Spectrum,
+    distribution: Distribution,
+    mean_inverse_velocity_s_m: f64,
+    wind_m_s: DVec3,
+}
+
+impl Default for RainfallField {
+    fn default() -> Self {
+        let distribution = Distribution::MarshallPalmer;
+        let spectrum = Spectrum {
+            intensity_mm_h: 0.0,
+            n0_per_m3_mm: 0.0,
+            slope_per_mm: 4.1,
+        };
+        Self {
+            motion: FieldMotion::default(),
+            spectrum,
+            distribution,
+            mean_inverse_velocity_s_m: spectrum.mean_inverse_velocity(),
+            wind_m_s: DVec3::ZERO,
+        }
+    }
+}
+
+impl RainfallField {
+    /// Whether anything falls.
+    #[must_use]
+    pub fn is_raining(&self) -> bool {
+        self.spectrum.intensity_mm_h > 0.0
+    }
+
+    /// The drop-size distribution in force.
+    #[must_use]
+    pub fn spectrum(&self) -> &Spectrum {
+        &self.spectrum
+    }
+
+    /// Where the air goes. Units: m/s.
+    #[must_use]
+    pub fn wind_m_s(&self) -> DVec3 {
+        self.wind_m_s
+    }
+
+    /// Flux mean of 1/v. Units: s/m.
+    #[must_use]
+    pub fn mean_inverse_velocity_s_m(&self) -> f64 {
+        self.mean_inverse_velocity_s_m
+    }
+
+    /// The class frames as they stood at the last tick.
+    #[must_use]
+    pub fn motion(&self) -> &FieldMotion {
+        &self.motion
+    }
+
+    /// The class frames `seconds` after the last tick: what a frame between ticks shows.
+    #[must_use]
+    pub fn motion_after(&self, seconds: f64) -> FieldMotion {
+        self.motion.after(seconds)
+    }
+
+    /// Takes over the weather of this tick and moves on by its length.
+    fn tick(&mut self, conditions: &WeatherConditions, seconds: f64) {
+        if conditions.intensity_mm_h != self.spectrum.intensity_mm_h || conditions.distribution != self.distribution {
+            // The conditions have been validated before they became state.
+            if let Ok(spectrum) = Spectrum::new(conditions.distribution, conditions.intensity_mm_h) {
+                self.spectrum = spectrum;
+                self.distribution = conditions.distribution;
+                // Dry air keeps the last slant: nothing falls that it could matter to.
+                if spectrum.intensity_mm_h > 0.0 {
+                    self.mean_inverse_velocity_s_m = spectrum.mean_inverse_velocity();
+                }
+            }
+        }
+        self.wind_m_s = conditions.wind_m_s;
+        self.motion.set_velocity(self.wind_m_s, air_density(conditions));
+        self.motion.advance(seconds);
+    }
+}
+
+/// Density of dry air. Units: kg/m³.
+fn air_density(conditions: &WeatherConditions) -> f64 {
+    const GAS_CONSTANT: f64 = 287.05;
+    let density = conditions.pressure_pa / (GAS_CONSTANT * (conditions.air_temperature_c + 273.15));
+    if density.is_finite() { density } else { AIR_DENSITY }
+}
+
+impl HashState for RainfallField {
+    fn hash_state(&self, hasher: &mut StateHasher) {
+        for offset in &self.motion.offset_m {
+            for value in offset.to_array() {
+                hasher.f64(value);
+            }
+        }
+        hasher.f64(self.spectrum.intensity_mm_h);
+    }
+}
+
+/// Advances the drop field with the weather.
+pub struct RainfallFieldPlugin;
+
+impl Plugin for RainfallFieldPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<RainfallField>()
+            .hash_resource::<RainfallField>("rainfall")
+            .add_systems(RainTick, advance_field.in_set(RainSystems::Rainfall));
+    }
+}
+
+fn advance_field(
+    mut field: ResMut<RainfallField>,
+    clock: Res<RainClock>,
+    active: Res<ActiveWeather>,
+    weather: Query<&WeatherState>,
+) {
+    let state = active.entity().and_then(|entity| weather.get(entity).ok());
+    let conditions = state.map_or_else(WeatherConditions::default, |s| *s.conditions());
+    field.tick(&conditions, clock.current_tick_s());
+}

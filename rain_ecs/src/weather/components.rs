@@ -1,0 +1,125 @@
+//! What the user sets.
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use rain_core::rainfall::Distribution;
+use rain_core::weather::{ArtistSettings, Timeline, WeatherConditions, WeatherPreset};
+
+use super::state::WeatherState;
+
+/// The weather, uniform over the world. Edit it at any time; the next tick takes it.
+///
+/// A value outside its domain is reported by [`crate::RainConfigError`], and the last good weather stays in force.
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
+#[reflect(Component, Debug, Clone, PartialEq, Default)]
+#[require(WeatherMode, WeatherState)]
+pub struct Weather {
+    /// Rain rate. Units: mm/h. Domain: [0, 500]. Default: 0.
+    pub intensity_mm_h: f64,
+    /// Where the air goes. Units: m/s. Domain: length ≤ 80. Default: 0.
+    pub wind_m_s: Vec3,
+    /// Air temperature. Units: °C. Domain: [−60, 60]. Default: 15.
+    pub air_temperature_c: f64,
+    /// Relative humidity. Units: none. Domain: [0, 1]. Default: 0.7.
+    pub relative_humidity: f64,
+    /// Air pressure. Units: Pa. Domain: [30000, 110000]. Default: 101325.
+    pub pressure_pa: f64,
+    /// Net radiation that the ground receives. Units: W/m². Domain: [−300, 1400]. Default: 150.
+    pub net_radiation_w_m2: f64,
+    /// Family of drop sizes. Default: Marshall–Palmer.
+    #[reflect(ignore)]
+    pub distribution: Distribution,
+}
+
+impl Default for Weather {
+    fn default() -> Self {
+        WeatherConditions::default().into()
+    }
+}
+
+impl Weather {
+    /// Ready-made weather.
+    #[must_use]
+    pub fn preset(preset: WeatherPreset) -> Self {
+        preset.conditions().into()
+    }
+
+    /// The default weather with this rain rate in mm/h (checked by the next tick, as any edit is).
+    #[must_use]
+    pub fn rain(intensity_mm_h: f64) -> Self {
+        Self {
+            intensity_mm_h,
+            ..Self::default()
+        }
+    }
+
+    /// The same numbers as the core's conditions, not yet checked.
+    #[must_use]
+    pub fn conditions(&self) -> WeatherConditions {
+        WeatherConditions {
+            intensity_mm_h: self.intensity_mm_h,
+            wind_m_s: self.wind_m_s.as_dvec3(),
+            air_temperature_c: self.air_temperature_c,
+            relative_humidity: self.relative_humidity,
+            pressure_pa: self.pressure_pa,
+            net_radiation_w_m2: self.net_radiation_w_m2,
+            distribution: self.distribution,
+        }
+    }
+}
+
+impl From<WeatherConditions> for Weather {
+    fn from(c: WeatherConditions) -> Self {
+        Self {
+            intensity_mm_h: c.intensity_mm_h,
+            wind_m_s: c.wind_m_s.as_vec3(),
+            air_temperature_c: c.air_temperature_c,
+            relative_humidity: c.relative_humidity,
+            pressure_pa: c.pressure_pa,
+            net_radiation_w_m2: c.net_radiation_w_m2,
+            distribution: c.distribution,
+        }
+    }
+}
+
+/// Drives the [`Weather`] of its entity: each tick uses the timeline's exact means and leaves the value at the tick's
+/// end in `Weather`, where edits have no effect until the timeline is removed.
+#[derive(Component, Reflect, Debug, Clone, PartialEq)]
+#[reflect(opaque)]
+#[reflect(Component, Debug, Clone, PartialEq)]
+#[require(Weather)]
+pub struct WeatherTimeline {
+    /// The course of the weather.
+    pub timeline: Timeline,
+    /// Time on the rain clock at which the timeline's zero lies. Units: s. Domain: ±5e8. Default: 0.
+    pub start_s: f64,
+}
+
+impl WeatherTimeline {
+    /// A timeline whose zero is the rain clock's.
+    #[must_use]
+    pub fn new(timeline: Timeline) -> Self {
+        Self { timeline, start_s: 0.0 }
+    }
+}
+
+/// Which of the two ways gives [`WeatherState::wetness`] and [`WeatherState::water_level_mm`]. Both are always
+/// computed, so that switching does not jump to a dry start.
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[reflect(Component, Debug, Clone, PartialEq, Default)]
+pub enum WeatherMode {
+    /// Water in mm per surface class, from physics.
+    #[default]
+    Physical,
+    /// Levels in [0, 1] with rates and targets per intensity.
+    Artist,
+}
+
+/// Settings of the artists' levels; without it [`ArtistSettings::default`] holds. Checked like [`Weather`].
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq, Default)]
+#[reflect(opaque)]
+#[reflect(Component, Debug, Clone, PartialEq, Default)]
+#[require(Weather)]
+pub struct ArtistControls(pub ArtistSettings);

@@ -1,0 +1,56 @@
+//! The weather of a world: what the user sets, how it changes, what it does to open ground.
+//!
+//! | file | concept |
+//! |---|---|
+//! | `components.rs` | [`Weather`], [`WeatherTimeline`], [`WeatherMode`], [`ArtistControls`] |
+//! | `state.rs` | [`WeatherState`], the output |
+//! | `systems.rs` | choosing, checking and advancing in [`crate::RainTick`] |
+//!
+//! One weather counts: that of the entity with the lowest index (then generation). Others are left alone and
+//! reported once by a [`WeatherIgnored`] message.
+
+mod components;
+mod state;
+mod systems;
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+
+pub use components::{ArtistControls, Weather, WeatherMode, WeatherTimeline};
+pub use state::WeatherState;
+pub use systems::{ActiveWeather, WeatherIgnored};
+
+use crate::schedule::{RainSystems, RainTick};
+use crate::state_hash::{HashState, StateHashAppExt};
+
+/// Adds the weather. Needs [`crate::RainClockPlugin`] to run.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WeatherPlugin;
+
+impl Plugin for WeatherPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<ActiveWeather>()
+            .add_message::<crate::RainConfigError>()
+            .add_message::<WeatherIgnored>()
+            .register_type::<Weather>()
+            .register_type::<WeatherTimeline>()
+            .register_type::<WeatherMode>()
+            .register_type::<ArtistControls>()
+            .register_type::<WeatherState>()
+            .hash_with("weather", |world, hasher| {
+                let active = world.get_resource::<ActiveWeather>().and_then(ActiveWeather::entity);
+                if let Some(state) = active.and_then(|entity| world.get::<WeatherState>(entity)) {
+                    state.hash_state(hasher);
+                }
+            })
+            .add_systems(
+                RainTick,
+                (
+                    (systems::choose_weather, systems::check_weather)
+                        .chain()
+                        .in_set(RainSystems::Input),
+                    systems::advance_weather.in_set(RainSystems::Weather),
+                ),
+            );
+    }
+}

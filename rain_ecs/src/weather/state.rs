@@ -1,0 +1,142 @@
+//! What the weather has done.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use rain_core::weather::{ArtistState, SurfaceClass, SurfaceColumn, WeatherConditions, WeatherSurfaces};
+
+use super::components::WeatherMode;
+use crate::state_hash::{HashState, StateHasher};
+
+/// The weather in force and the state of open ground under it, after the last tick. Written by the weather systems
+/// alone.
+#[derive(Component, Reflect, Debug, Clone, Default)]
+#[reflect(opaque)]
+#[reflect(Component, Debug, Clone, Default)]
+pub struct WeatherState {
+    pub(super) conditions: WeatherConditions,
+    pub(super) last_good: WeatherConditions,
+    pub(super) surfaces: WeatherSurfaces,
+    pub(super) mode: WeatherMode,
+    pub(super) timeline_refused: bool,
+    /// Wetness and water level of each class before the last tick.
+    pub(super) before: [[f64; 2]; SurfaceClass::COUNT],
+}
+
+impl WeatherState {
+    /// The mean conditions over the last tick: what acted on the ground, and what moved the air.
+    #[must_use]
+    pub fn conditions(&self) -> &WeatherConditions {
+        &self.conditions
+    }
+
+    /// The mode in force in the last tick.
+    #[must_use]
+    pub fn mode(&self) -> WeatherMode {
+        self.mode
+    }
+
+    /// Wetness of a class, by the mode in force: pore water / capacity, or the artists' wet level.
+    /// Units: none. Domain: [0, 1].
+    #[must_use]
+    pub fn wetness(&self, class: SurfaceClass) -> f64 {
+        match self.mode {
+            WeatherMode::Physical => self.surfaces.wetness(class),
+            WeatherMode::Artist => self.surfaces.artist().wetness,
+        }
+    }
+
+    /// Mean film of a class outside basins, by the mode in force: water on the surface, or the artists' puddle level
+    /// times the depth it stands for. Units: mm.
+    #[must_use]
+    pub fn water_level_mm(&self, class: SurfaceClass) -> f64 {
+        match self.mode {
+            WeatherMode::Physical => self.surfaces.water_level_mm(class),
+            WeatherMode::Artist => self.surfaces.artist().puddles * self.surfaces.artist_settings().full_level_mm,
+        }
+    }
+
+    /// [`WeatherState::wetness`] between the last two ticks, at [`crate::RainClock::interpolation`].
+    #[must_use]
+    pub fn wetness_at(&self, class: SurfaceClass, interpolation: f32) -> f64 {
+        mix(self.before[class.index()][0], self.wetness(class), interpolation)
+    }
+
+    /// [`WeatherState::water_level_mm`] between the last two ticks, at [`crate::RainClock::interpolation`].
+    #[must_use]
+    pub fn water_level_mm_at(&self, class: SurfaceClass, interpolation: f32) -> f64 {
+        mix(self.before[class.index()][1], self.water_level_mm(class), interpolation)
+    }
+
+    /// The water of a class (the physical way).
+    #[must_use]
+    pub fn column(&self, class: SurfaceClass) -> &SurfaceColumn {
+        self.surfaces.column(class)
+    }
+
+    /// All classes with their properties.
+    #[must_use]
+    pub fn surfaces(&self) -> &WeatherSurfaces {
+        &self.surfaces
+    }
+
+    /// The artists' levels.
+    #[must_use]
+    pub fn artist(&self) -> &ArtistState {
+        self.surfaces.artist()
+    }
+
+    /// Penman's potential evaporation, negative for dew (which wets nothing). Units: mm/h.
+    #[must_use]
+    pub fn evaporation_mm_h(&self) -> f64 {
+        self.surfaces.evaporation_mm_h()
+    }
+
+    /// Rain since the start. Units: mm.
+    #[must_use]
+    pub fn rain_mm(&self) -> f64 {
+        self.surfaces.rain_mm()
+    }
+
+    /// Whether it does not rain and nothing is wet, by the mode in force: what lets a scene skip all rain work.
+    #[must_use]
+    pub fn is_dry_and_settled(&self) -> bool {
+        self.conditions.intensity_mm_h == 0.0
+            && match self.mode {
+                WeatherMode::Physical => self.surfaces.ground_is_dry(),
+                WeatherMode::Artist => self.surfaces.artist().is_dry(),
+            }
+    }
+
+    /// Remembers the levels that the coming tick starts from.
+    pub(super) fn keep_before(&mut self) {
+        self.before = SurfaceClass::ALL.map(|class| [self.wetness(class), self.water_level_mm(class)]);
+    }
+}
+
+fn mix(before: f64, now: f64, interpolation: f32) -> f64 {
+    before + (now - before) * f64::from(interpolation.clamp(0.0, 1.0))
+}
+
+impl HashState for WeatherState {
+    fn hash_state(&self, hasher: &mut StateHasher) {
+        for c in [&self.conditions, &self.last_good] {
+            let [x, y, z] = c.wind_m_s.to_array();
+            for value in [
+                c.intensity_mm_h,
+                x,
+                y,
+                z,
+                c.air_temperature_c,
+                c.relative_humidity,
+                c.pressure_pa,
+                c.net_radiation_w_m2,
+            ] {
+                hasher.f64(value);
+            }
+            hasher.u64(c.distribution as u64);
+        }
+        hasher.u64(self.mode as u64);
+        self.surfaces.for_each_state_bits(|bits| hasher.u64(bits));
+    }
+}

@@ -1,0 +1,181 @@
+//! Closed-in views: a camera in a room without openings draws no rain at all.
+
+use std::collections::BTreeSet;
+
+use bevy::math::DVec2;
+use bevy::mesh::{Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
+use bevy::prelude::*;
+use rain_core::cover::air::{Air, AirGrid, cell_of};
+use rain_core::cover::{CoverScene, CoverSettings as CoreCoverSettings, FallSlope, OccluderId};
+use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+use rain_ecs::prelude::*;
+
+use crate::rainfall::RainView;
+use crate::surface::OriginalMaterial;
+
+/// Whether the first active [`RainView`] stands in closed-in air.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AirAroundView {
+    /// No rain can be in sight.
+    pub closed_in: bool,
+}
+
+/// The scene's surfaces on the CPU: those whose material is opaque and whose mesh keeps its data.
+#[derive(Resource, Default)]
+pub(super) struct Surroundings {
+    air: AirGrid,
+    cover: Option<CoverScene>,
+    owners: BTreeSet<u64>,
+    /// Entities not yet taken in, or moved.
+    stale: bool,
+    /// The last flood that found no rain, and the cell it started from.
+    flooded: Option<BTreeSet<[i32; 3]>>,
+    start: IVec3,
+    /// What moved lately: left out of the walls until it stands still.
+    moving: BTreeSet<u64>,
+}
+
+/// A flood stays valid while the eye is this close to where it started. Units: cells.
+const SAME_PLACE: i32 = 8;
+
+type Surface = (
+    Entity,
+    Ref<'static, GlobalTransform>,
+    Ref<'static, Mesh3d>,
+    &'static InheritedVisibility,
+    OriginalMaterial,
+);
+
+pub(super) fn judge_air(
+    mut surroundings: ResMut<Surroundings>,
+    mut judged: ResMut<AirAroundView>,
+    field: Res<RainfallField>,
+    meshes: Res<Assets<Mesh>>,
+    materials: Res<Assets<StandardMaterial>>,
+    views: Query<(&GlobalTransform, &Camera), With<RainView>>,
+    surfaces: Query<Surface>,
+) {
+    judged.closed_in = false;
+    if !field.is_raining() {
+        surroundings.stale = true;
+        return;
+    }
+    let Some(eye) = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation().as_dvec3()) else {
+        return;
+    };
+    let s = &mut *surroundings;
+    take_in(s, &field, &meshes, &materials, &surfaces);
+    let Some(cover) = &s.cover else { return };
+    let cell = cell_of(eye);
+    let same_place = (cell - s.start).abs().max_element() <= SAME_PLACE;
+    if let Some(flooded) = &s.flooded
+        && same_place
+        && flooded.contains(&cell.to_array())
+    {
+        judged.closed_in = true;
+        return;
+    }
+    let inverse_speed = field.mean_inverse_velocity_s_m();
+    let range = RANGE_CAP_M * FADE_END + f64::from(SAME_PLACE) * rain_core::cover::air::AIR_CELL_M;
+    // Without an answer for a point, rain counts as reaching it.
+    let reached = |p| !cover.covered(p, inverse_speed).unwrap_or(false);
+    s.start = cell;
+    s.flooded = match s.air.flood(eye, range, reached) {
+        Air::ClosedIn(cells) => Some(cells),
+        Air::Open => None,
+    };
+    judged.closed_in = s.flooded.is_some();
+}
+
+/// Brings the CPU surfaces up to date with what was added, moved or removed.
+fn take_in(
+    s: &mut Surroundings,
+    field: &RainfallField,
+    meshes: &Assets<Mesh>,
+    materials: &Assets<StandardMaterial>,
+    surfaces: &Query<Surface>,
+) {
+    let wind = field.wind_m_s();
+    let Ok(slope) = FallSlope::new(DVec2::new(wind.x, wind.z), field.mean_inverse_velocity_s_m()) else {
+        return;
+    };
+    if s.cover.is_none() {
+        s.cover = CoverScene::new(CoreCoverSettings::default(), slope).ok();
+        s.stale = true;
+    }
+    let Some(cover) = s.cover.as_mut() else { return };
+    let mut changed = false;
+    if cover.slope().angle_to(&slope) > std::f64::consts::PI / 180.0 && cover.set_slope(slope).is_ok() {
+        changed = true;
+    }
+    let mut present = BTreeSet::new();
+    for (entity, transform, mesh, visible, original) in surfaces {
+        let owner = entity.to_bits();
+        let opaque = original
+            .handle()
+            .and_then(|h| materials.get(h))
+            .is_some_and(|m| matches!(m.alpha_mode, AlphaMode::Opaque | AlphaMode::Mask(_)));
+        if !opaque || !visible.get() {
+            continue;
+        }
+        present.insert(owner);
+        let known = s.owners.contains(&owner);
+        let moved = known && (transform.is_changed() || mesh.is_changed());
+        if moved {
+            s.moving.insert(owner);
+        } else if s.moving.remove(&owner) || (!known) {
+            let Some(triangles) = meshes.get(&mesh.0).and_then(|m| triangles_of(m, &transform)) else {
+                // No data on the CPU: it can neither cover nor close here, so the air counts as open.
+                present.remove(&owner);
+                continue;
+            };
+            let id = OccluderId(owner);
+            let taken = if known { cover.replace(id, &triangles) } else { cover.add(id, &triangles) };
+            if taken.is_ok() {
+                s.air.set(owner, triangles);
+                s.owners.insert(owner);
+                changed = true;
+            }
+            continue;
+        }
+        if moved {
+            s.air.remove(owner);
+            let _ = cover.remove(OccluderId(owner));
+            s.owners.remove(&owner);
+            changed = true;
+        }
+    }
+    let gone: Vec<u64> = s.owners.difference(&present).copied().collect();
+    for owner in gone {
+        s.air.remove(owner);
+        let _ = cover.remove(OccluderId(owner));
+        s.owners.remove(&owner);
+        changed = true;
+    }
+    s.stale = false;
+    if changed {
+        cover.update();
+        s.flooded = None;
+    }
+}
+
+/// World-space triangles of a mesh; `None` when it is no triangle list or its data lives on the GPU only.
+fn triangles_of(mesh: &Mesh, transform: &GlobalTransform) -> Option<Vec<[bevy::math::DVec3; 3]>> {
+    if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
+        return None;
+    }
+    let VertexAttributeValues::Float32x3(positions) = mesh.try_attribute(Mesh::ATTRIBUTE_POSITION).ok()? else {
+        return None;
+    };
+    let world: Vec<_> = positions
+        .iter()
+        .map(|p| transform.transform_point(Vec3::from_array(*p)).as_dvec3())
+        .collect();
+    let at = |i: usize| world.get(i).copied();
+    let triangle = |a: usize, b: usize, c: usize| Some([at(a)?, at(b)?, at(c)?]);
+    let corners: Vec<usize> = match mesh.try_indices().ok() {
+        Some(indices) => indices.iter().collect(),
+        None => (0..positions.len()).collect(),
+    };
+    corners.chunks_exact(3).map(|t| triangle(t[0], t[1], t[2])).collect()
+}

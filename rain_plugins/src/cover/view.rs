@@ -1,0 +1,298 @@
+//! The cover camera: where it stands, and when it draws.
+
+use bevy::asset::RenderAssetUsages;
+use bevy::camera::primitives::Aabb;
+use bevy::camera::visibility::RenderLayers;
+use bevy::camera::{RenderTarget, visibility::InheritedVisibility};
+use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::light::cluster::Clusters;
+use bevy::math::{DVec2, DVec3};
+use bevy::prelude::*;
+use rain_ecs::prelude::*;
+use rain_render::cover::CoverPlacement;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use super::air::{AirAroundView, Surroundings, judge_air};
+use super::projection::ShearedProjection;
+use crate::rainfall::RainView;
+use crate::render_adapter::cover_image;
+use crate::report::{PassName, RainReport, SkipReason};
+use crate::schedule::RainViewSystems;
+
+/// Settings of the cover map. Changes take effect with the next redraw; `texels` only before the first rain.
+#[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Resource, Default)]
+pub struct CoverSettings {
+    /// Side of the covered square. Units: m. Domain: [10, 400]. Default: 60.
+    pub extent_m: f32,
+    /// Texels per side. Domain: [64, 4096]. Default: 1024.
+    pub texels: u32,
+    /// How far the eye may move off the map's centre before it is drawn anew. Units: m. Default: 6.
+    pub margin_m: f32,
+    /// Off: nothing stops rain.
+    pub enabled: bool,
+}
+
+impl Default for CoverSettings {
+    fn default() -> Self {
+        Self {
+            extent_m: 60.0,
+            texels: 1024,
+            margin_m: 6.0,
+            enabled: true,
+        }
+    }
+}
+
+/// Marks the plugin's own depth-only camera.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default)]
+#[reflect(Component, Default)]
+pub struct RainCoverView;
+
+/// The kept map: where it lies and the texture that holds it.
+#[derive(Resource, Clone, Debug)]
+pub struct CoverMap {
+    /// Depth texture (Depth32Float), valid once `placement` is set.
+    pub image: Handle<Image>,
+    /// Where the kept map lies; `None` until it has been drawn once.
+    pub placement: Option<CoverPlacement>,
+    /// True in frames that draw it.
+    pub redraw: bool,
+    /// Set by the render world when a drawn map held every mesh that was ready to be drawn.
+    pub(crate) complete: Arc<AtomicBool>,
+}
+
+/// Heights beyond this above or below the eye do not cover (sky domes). Units: m.
+const VERTICAL_REACH_M: f32 = 150.0;
+
+/// The fall direction may turn by this before the map is drawn anew. Units: rad.
+const DIRECTION_TOLERANCE: f64 = std::f64::consts::PI / 180.0;
+
+/// Draws and keeps the cover map.
+pub struct CoverPlugin;
+
+impl Plugin for CoverPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<CoverSettings>()
+            .register_type::<CoverSettings>()
+            .register_type::<RainCoverView>()
+            .add_systems(Startup, create_map)
+            .add_systems(
+                PostUpdate,
+                (spawn_view, watch_occluders, aim_view, judge_air)
+                    .chain()
+                    .in_set(RainViewSystems::Cover),
+            )
+            .init_resource::<OccluderWatch>()
+            .init_resource::<AirAroundView>()
+            .init_resource::<Surroundings>();
+    }
+}
+
+fn create_map(mut commands: Commands, mut images: ResMut<Assets<Image>>, settings: Res<CoverSettings>) {
+    let mut image = cover_image(settings.texels.clamp(64, 4096));
+    image.asset_usage = RenderAssetUsages::RENDER_WORLD;
+    commands.insert_resource(CoverMap {
+        image: images.add(image),
+        placement: None,
+        redraw: false,
+        complete: Arc::default(),
+    });
+}
+
+/// Spawned after the first [`RainView`], never in `Startup`: plugins that adopt "the first new camera" must find the
+/// game's camera, not this one.
+fn spawn_view(
+    mut commands: Commands,
+    settings: Res<CoverSettings>,
+    views: Query<Option<&RenderLayers>, With<RainView>>,
+    cover: Query<(), With<RainCoverView>>,
+) {
+    let Some(layers) = views.iter().next() else { return };
+    if !cover.is_empty() || !settings.enabled {
+        return;
+    }
+    let mut entity = commands.spawn((
+        Name::new("rain cover view"),
+        RainCoverView,
+        Camera3d::default(),
+        Camera {
+            order: -100,
+            is_active: false,
+            ..default()
+        },
+        RenderTarget::None {
+            size: UVec2::splat(settings.texels.clamp(64, 4096)),
+        },
+        Projection::custom(ShearedProjection {
+            half_extent: 1.0,
+            range: 1.0,
+            reference: 0.0,
+            drift: Vec2::ZERO,
+        }),
+        Tonemapping::None,
+        DepthPrepass,
+        Msaa::Off,
+    ));
+    // Without clusters the view is not lit, so no shadow cascades are rendered for it.
+    entity.remove::<Clusters>();
+    if let Some(layers) = layers {
+        entity.insert(layers.clone());
+    }
+}
+
+/// What the watch has seen since the map was last drawn.
+#[derive(Resource, Default)]
+struct OccluderWatch {
+    changed: bool,
+    /// Heights of everything that covers near the view. Units: m.
+    top: f32,
+    bottom: f32,
+    count: usize,
+}
+
+type Occluder = (
+    Ref<'static, GlobalTransform>,
+    Ref<'static, Mesh3d>,
+    &'static Aabb,
+    Ref<'static, InheritedVisibility>,
+);
+
+/// Notes whether anything that covers near the view has moved, appeared, vanished or changed.
+fn watch_occluders(
+    mut watch: ResMut<OccluderWatch>,
+    settings: Res<CoverSettings>,
+    views: Query<&GlobalTransform, With<RainView>>,
+    occluders: Query<Occluder>,
+    mut removed: RemovedComponents<Mesh3d>,
+    mut meshes: MessageReader<AssetEvent<Mesh>>,
+    mut materials: MessageReader<AssetEvent<StandardMaterial>>,
+    mut images: MessageReader<AssetEvent<Image>>,
+) {
+    let asset_changed = meshes.read().any(|e| matches!(e, AssetEvent::Modified { .. }))
+        | materials.read().any(|e| matches!(e, AssetEvent::Modified { .. }))
+        // An alpha-masked leaf covers only once its texture is there.
+        | images.read().any(|e| matches!(e, AssetEvent::LoadedWithDependencies { .. }));
+    let gone = removed.read().count() > 0;
+    watch.changed |= asset_changed | gone;
+    let Some(eye) = views.iter().next().map(GlobalTransform::translation) else {
+        return;
+    };
+    let reach = settings.extent_m;
+    let (mut top, mut bottom, mut count) = (f32::MIN, f32::MAX, 0);
+    for (transform, mesh, bounds, visible) in &occluders {
+        let centre = transform.affine().transform_point3a(bounds.center);
+        let radius = transform.radius_vec3a(bounds.half_extents);
+        let offset = Vec3::from(centre) - eye;
+        if offset.xz().abs().max_element() > reach + radius {
+            continue;
+        }
+        if transform.is_changed() || mesh.is_changed() || visible.is_changed() {
+            watch.changed = true;
+        }
+        if visible.get() {
+            let m = transform.affine().matrix3;
+            let half = m.x_axis.y.abs() * bounds.half_extents.x
+                + m.y_axis.y.abs() * bounds.half_extents.y
+                + m.z_axis.y.abs() * bounds.half_extents.z;
+            top = top.max(centre.y + half);
+            bottom = bottom.min(centre.y - half);
+            count += 1;
+        }
+    }
+    if count != watch.count {
+        watch.changed = true;
+        watch.count = count;
+    }
+    (watch.top, watch.bottom) = (top, bottom);
+}
+
+/// Points the cover camera and decides whether this frame draws it.
+fn aim_view(
+    mut map: ResMut<CoverMap>,
+    mut watch: ResMut<OccluderWatch>,
+    settings: Res<CoverSettings>,
+    report: Res<RainReport>,
+    field: Res<RainfallField>,
+    weather: Query<&WeatherState>,
+    views: Query<(&GlobalTransform, &Camera), (With<RainView>, Without<RainCoverView>)>,
+    mut cover: Query<(&mut Transform, &mut GlobalTransform, &mut Camera, &mut Projection), With<RainCoverView>>,
+) {
+    map.redraw = false;
+    let Ok((mut transform, mut global, mut camera, mut projection)) = cover.single_mut() else {
+        return;
+    };
+    camera.is_active = false;
+    let view = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation().as_dvec3());
+    let wet = weather.iter().any(|w| !w.is_dry_and_settled());
+    let reason = match view {
+        _ if !settings.enabled => Some(SkipReason::Disabled),
+        None => Some(SkipReason::NoView),
+        Some(_) if !wet && !field.is_raining() => Some(SkipReason::Dry),
+        Some(_) => None,
+    };
+    if let Some(reason) = reason {
+        report.skipped(PassName::Cover, reason);
+        return;
+    }
+    let eye = view.unwrap_or_default();
+    let wind = field.wind_m_s();
+    let wind = DVec2::new(wind.x, wind.z);
+    let inverse_speed = field.mean_inverse_velocity_s_m();
+    let extent = f64::from(settings.extent_m.clamp(10.0, 400.0));
+    let texel = extent / f64::from(settings.texels);
+    let (top, bottom) = if watch.count == 0 {
+        (eye.y as f32 + 1.0, eye.y as f32 - 1.0)
+    } else {
+        (
+            (watch.top + 0.5).min(eye.y as f32 + VERTICAL_REACH_M),
+            (watch.bottom - 0.5).max(eye.y as f32 - VERTICAL_REACH_M),
+        )
+    };
+    let top = f64::from(top.max(bottom + 1.0));
+    let bottom = f64::from(bottom);
+    // The reference plane is the eye's height in whole metres: the map is centred on rays that pass the eye.
+    let plane = eye.y.round();
+    let kept = map.placement.filter(|p| {
+        let direction = |wind: DVec2, t: f64| DVec3::new(wind.x * t, -1.0, wind.y * t).normalize();
+        let turned = direction(p.wind_m_s, p.inverse_speed_s_m).angle_between(direction(wind, inverse_speed));
+        (DVec2::new(eye.x, eye.z) - p.centre_m).abs().max_element() <= f64::from(settings.margin_m)
+            && (eye.y - p.plane_m).abs() <= f64::from(settings.margin_m)
+            && turned <= DIRECTION_TOLERANCE
+            && (p.extent_m - extent).abs() < 1e-9
+    });
+    let complete = map.complete.load(Relaxed);
+    if kept.is_some() && !watch.changed && complete {
+        report.skipped(PassName::Cover, SkipReason::NothingMoved);
+        return;
+    }
+    watch.changed = false;
+    map.redraw = true;
+    // Whole texels, or shelter edges swim when the map follows the eye.
+    let snap = |v: f64| (v / texel).round() * texel;
+    let centre = DVec2::new(snap(eye.x), snap(eye.z));
+    *transform = Transform::from_xyz(centre.x as f32, top as f32, centre.y as f32).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
+    *global = GlobalTransform::from(*transform);
+    // Image x is world x, image y is world −z.
+    let drift = (wind * inverse_speed).as_vec2();
+    *projection = Projection::custom(ShearedProjection {
+        half_extent: 0.5 * extent as f32,
+        range: (top - bottom) as f32,
+        reference: (top - plane) as f32,
+        drift: Vec2::new(drift.x, -drift.y),
+    });
+    camera.is_active = true;
+    map.placement = Some(CoverPlacement {
+        centre_m: centre,
+        plane_m: plane,
+        extent_m: extent,
+        top_m: top,
+        range_m: top - bottom,
+        highest_m: top,
+        wind_m_s: wind,
+        inverse_speed_s_m: inverse_speed,
+        texels: settings.texels,
+    });
+}

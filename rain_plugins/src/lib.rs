@@ -1,0 +1,94 @@
+//! Rain for Bevy: add [`RainPlugins`], spawn a [`Weather`](prelude::Weather), mark the camera with
+//! [`RainView`](prelude::RainView), load any glTF, and it rains.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use rain_plugins::prelude::*;
+//!
+//! fn main() {
+//!     App::new()
+//!         .add_plugins((DefaultPlugins, RainPlugins))
+//!         .add_systems(Startup, |mut commands: Commands| {
+//!             commands.spawn(Weather::preset(WeatherPreset::HeavyRain));
+//!             commands.spawn((Camera3d::default(), RainView::default(), Transform::from_xyz(0.0, 1.7, 8.0)));
+//!         })
+//!         .run();
+//! }
+//! ```
+//!
+//! Each phenomenon is a small plugin that may be used alone or left out of the group
+//! (`RainPlugins.build().disable::<WetSurfacePlugin>()`):
+//!
+//! | plugin | what it adds |
+//! |---|---|
+//! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
+//! | [`cover::CoverPlugin`] | what stops rain |
+//! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
+//! | [`surface::WetSurfacePlugin`] | wet materials |
+//! | [`render_adapter::RainRenderPlugin`] | the passes |
+
+pub mod cover;
+pub mod rainfall;
+pub mod render_adapter;
+pub mod report;
+#[cfg(feature = "scenario")]
+pub mod scenario;
+pub mod schedule;
+pub mod surface;
+
+use bevy::app::PluginGroupBuilder;
+use bevy::camera::CameraUpdateSystems;
+use bevy::camera::visibility::VisibilitySystems;
+use bevy::prelude::*;
+use bevy::transform::TransformSystems;
+
+use schedule::RainViewSystems;
+
+/// Everything: weather, drop field, cover, near rain, wet surfaces.
+pub struct RainPlugins;
+
+impl PluginGroup for RainPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>()
+            .add(rain_ecs::RainEcsPlugin::default())
+            .add(RainSchedulePlugin)
+            .add(render_adapter::RainRenderPlugin)
+            .add(cover::CoverPlugin)
+            .add(rainfall::RainfallPlugin)
+            .add(surface::WetSurfacePlugin)
+    }
+}
+
+/// Orders the per-view systems of all other plugins.
+pub struct RainSchedulePlugin;
+
+impl Plugin for RainSchedulePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<report::RainReport>().configure_sets(
+            PostUpdate,
+            (
+                RainViewSystems::Cover
+                    .after(TransformSystems::Propagate)
+                    .after(VisibilitySystems::VisibilityPropagate)
+                    .before(CameraUpdateSystems),
+                RainViewSystems::Views
+                    .after(RainViewSystems::Cover)
+                    .after(CameraUpdateSystems),
+                RainViewSystems::Surfaces
+                    .after(RainViewSystems::Cover)
+                    .after(TransformSystems::Propagate),
+            ),
+        );
+    }
+}
+
+/// What users type.
+pub mod prelude {
+    pub use crate::cover::CoverSettings;
+    pub use crate::rainfall::RainView;
+    pub use crate::render_adapter::RainRenderStatus;
+    pub use crate::report::{PassName, RainReport, SkipReason};
+    pub use crate::surface::{KeepDry, SurfaceWetting};
+    pub use crate::{RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin};
+    pub use rain_ecs::prelude::*;
+}

@@ -1,0 +1,8 @@
+//! Near rain for each marked camera: the container that follows the view.
+
+mod motion;
+mod view;
+
+pub use motion::ViewMotion;
+pub(crate) use view::SoftwareAdapter;
+pub use view::{RainView, RainViewFrame, RainfallPlugin, MAX_CONTRAST, MAX_STREAK_BUDGET};

@@ -1,0 +1,242 @@
+//! The per-view container: which drops a marked camera draws this frame.
+
+use std::sync::Arc;
+
+use bevy::math::Vec4;
+use bevy::prelude::*;
+use rain_core::error::{ConfigError, in_range};
+use rain_core::rainfall::{Container, RainViewVolume, quality_for_budget};
+use rain_ecs::prelude::*;
+use rain_render::rainfall::Shutter;
+
+use super::motion::ViewMotion;
+use crate::cover::AirAroundView;
+use crate::report::{PassName, RainReport, SkipReason};
+use crate::schedule::RainViewSystems;
+
+/// Largest accepted number of streaks in a view.
+pub const MAX_STREAK_BUDGET: u32 = 4_000_000;
+
+/// Largest accepted contrast gain.
+pub const MAX_CONTRAST: f32 = 32.0;
+
+/// Put on the 3D camera that should see rain.
+///
+/// Requires nothing else: with a `DepthPrepass` on the camera, streaks fade softly where they meet the scene; without
+/// one they end at a hard depth test.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default)]
+#[require(ViewMotion, RainViewFrame)]
+pub struct RainView {
+    /// Draws rain in this view.
+    pub enabled: bool,
+    /// How many streaks to draw singly; `None`: 30,000 on a software adapter, 100,000 on a GPU. Domain: [0, 4·10⁶].
+    /// The number is spent on the drops with the most contrast.
+    pub streak_budget: Option<u32>,
+    /// Gain on streak contrast alone: 1 is physical, 1…32. Default: 4, by eye: physical streaks are 1–3 % opaque and
+    /// vanish in a game's picture; above 8 rain looks drawn.
+    pub contrast: f32,
+    /// Shutter time. Units: s. Domain: [0.0005, 0.25]. Default: 1/60. Longer: longer and fainter streaks.
+    pub exposure_s: f32,
+    /// Distance over which streaks fade where they meet the scene (needs a depth prepass). Units: m. Default: 0.15.
+    pub soft_m: f32,
+}
+
+impl Default for RainView {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            streak_budget: None,
+            contrast: 4.0,
+            exposure_s: 1.0 / 60.0,
+            soft_m: 0.15,
+        }
+    }
+}
+
+impl RainView {
+    /// These settings, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        in_range("contrast", f64::from(self.contrast), 1.0, f64::from(MAX_CONTRAST), "1 to 32")?;
+        in_range("exposure_s", f64::from(self.exposure_s), 0.0005, 0.25, "0.0005 to 0.25 s")?;
+        in_range("soft_m", f64::from(self.soft_m), 0.0, 10.0, "0 to 10 m")?;
+        let budget = self.streak_budget.unwrap_or_default();
+        in_range("streak_budget", f64::from(budget), 0.0, f64::from(MAX_STREAK_BUDGET), "0 to 4000000")?;
+        Ok(self)
+    }
+}
+
+/// What a view draws this frame; extracted to the render world.
+#[derive(Component, Clone, Debug, Default)]
+pub struct RainViewFrame {
+    /// The drops, shared with the render world.
+    pub container: Arc<Container>,
+    /// Kept from frame to frame so that nothing is allocated.
+    spare: Vec<Arc<Container>>,
+    /// Seed of the field.
+    pub seed: u64,
+    /// Shutter and quality.
+    pub shutter: Option<Shutter>,
+    /// The last valid settings.
+    settings: RainView,
+    /// Quality κ in force and the second it was last set.
+    kappa: Option<(f64, f64)>,
+    /// Focal length. Units: px.
+    pub focal_px: f32,
+    /// Motion over the exposure.
+    pub motion: ViewMotion,
+}
+
+impl RainViewFrame {
+    /// Whether this frame draws rain.
+    #[must_use]
+    pub fn draws(&self) -> bool {
+        self.shutter.is_some() && !self.container.records.is_empty()
+    }
+}
+
+/// Software adapters get a smaller default budget.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct SoftwareAdapter(pub(crate) bool);
+
+/// Near rain: fills the containers of all [`RainView`]s.
+pub struct RainfallPlugin;
+
+impl Plugin for RainfallPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<RainView>()
+            .init_resource::<SoftwareAdapter>()
+            .add_systems(PostUpdate, fill_containers.in_set(RainViewSystems::Views));
+    }
+}
+
+/// κ follows its target with this time constant, so that a change of rain does not jump. Units: s.
+const QUALITY_TIME_S: f64 = 1.0;
+
+fn fill_containers(
+    time: Res<Time>,
+    clock: Res<RainClock>,
+    field: Res<RainfallField>,
+    seed: Res<RainSeed>,
+    software: Res<SoftwareAdapter>,
+    report: Res<RainReport>,
+    air: Res<AirAroundView>,
+    mut errors: MessageWriter<RainConfigError>,
+    mut views: Query<(Entity, Ref<RainView>, &Camera, &Projection, &GlobalTransform, &mut ViewMotion, &mut RainViewFrame)>,
+) {
+    // Seconds since the last tick: frames lie between ticks.
+    let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
+    let now = clock.now_s() + since_tick;
+    let mut any = false;
+    for (entity, view, camera, projection, transform, mut motion, mut frame) in &mut views {
+        any = true;
+        frame.shutter = None;
+        let (_, rotation, position) = transform.to_scale_rotation_translation();
+        motion.observe(position, rotation, time.delta_secs());
+        if view.is_changed() {
+            match view.validated() {
+                Ok(settings) => frame.settings = settings,
+                Err(error) => {
+                    errors.write(RainConfigError { entity, error });
+                }
+            }
+        }
+        let settings = frame.settings;
+        let size = camera.physical_viewport_size().unwrap_or_default();
+        let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
+            Some(SkipReason::NoView)
+        } else if !settings.enabled || settings.streak_budget == Some(0) {
+            Some(SkipReason::Disabled)
+        } else if !field.is_raining() {
+            Some(SkipReason::NoRain)
+        } else if !matches!(projection, Projection::Perspective(_)) {
+            Some(SkipReason::Unsupported)
+        } else if air.closed_in {
+            Some(SkipReason::Indoors)
+        } else {
+            None
+        };
+        if let Some(reason) = skip {
+            report.skipped(PassName::Rainfall, reason);
+            continue;
+        }
+        let clip_from_view = projection.get_clip_from_view();
+        let volume = view_volume(clip_from_view, size, transform, &motion, settings.exposure_s);
+        let budget = settings.streak_budget.unwrap_or(if software.0 { 30_000 } else { 100_000 });
+        let target = quality_for_budget(field.spectrum(), &volume, f64::from(budget)).max(1e-6);
+        let kappa = match frame.kappa {
+            // Low-passed while the view runs; at once after a pause, when nobody sees the jump.
+            Some((kappa, then)) if (0.0..0.5).contains(&(now - then)) => {
+                let blend = 1.0 - (-(now - then) / QUALITY_TIME_S).exp();
+                kappa * (target / kappa).powf(blend)
+            }
+            _ => target,
+        };
+        frame.kappa = Some((kappa, now));
+
+        let mut container = frame.take_spare();
+        let field_motion = field.motion_after(since_tick);
+        // The budget is a mean; twice it is the hard bound on memory.
+        let complete = Arc::get_mut(&mut container).is_some_and(|c| {
+            c.fill(seed.0, field.spectrum(), &field_motion, &volume, kappa, 2 * budget as usize + 1024)
+        });
+        if !complete {
+            warn_once!("a rain view holds more than twice its streak budget; the rest is left out");
+        }
+        let old = std::mem::replace(&mut frame.container, container);
+        frame.spare.push(old);
+        frame.spare.truncate(3);
+        frame.seed = seed.0;
+        frame.motion = *motion;
+        frame.focal_px = volume.focal_px as f32;
+        frame.shutter = Some(Shutter {
+            exposure_s: settings.exposure_s,
+            contrast: settings.contrast,
+            kappa: kappa as f32,
+            soft_m: settings.soft_m,
+        });
+    }
+    if !any {
+        report.skipped(PassName::Rainfall, SkipReason::NoView);
+    }
+}
+
+impl RainViewFrame {
+    /// A container that nobody else holds.
+    fn take_spare(&mut self) -> Arc<Container> {
+        let free = self.spare.iter().position(|c| Arc::strong_count(c) == 1);
+        free.map(|i| self.spare.swap_remove(i)).unwrap_or_default()
+    }
+}
+
+/// The view as the container needs it.
+fn view_volume(
+    clip_from_view: Mat4,
+    size: UVec2,
+    transform: &GlobalTransform,
+    motion: &ViewMotion,
+    exposure_s: f32,
+) -> RainViewVolume {
+    let (_, rotation, position) = transform.to_scale_rotation_translation();
+    let (sx, sy) = (clip_from_view.x_axis.x, clip_from_view.y_axis.y);
+    let (tx, ty) = (1.0 / sx, 1.0 / sy);
+    let plane = |n: Vec3| -> Vec4 { (rotation * n.normalize()).extend(0.0) };
+    let product = f64::from(tx * ty);
+    let ratio = product / (f64::from(1.0 + tx * tx) * f64::from(1.0 + ty * ty)).sqrt();
+    RainViewVolume {
+        eye_m: position.as_dvec3(),
+        eye_velocity_m_s: motion.velocity_m_s,
+        side_planes: [
+            plane(Vec3::new(1.0, 0.0, -tx)),
+            plane(Vec3::new(-1.0, 0.0, -tx)),
+            plane(Vec3::new(0.0, 1.0, -ty)),
+            plane(Vec3::new(0.0, -1.0, -ty)),
+        ],
+        focal_px: f64::from(0.5 * size.y as f32 * sy),
+        solid_angle_sr: 4.0 * libm::asin(ratio.min(1.0)),
+        exposure_s: f64::from(exposure_s),
+    }
+}

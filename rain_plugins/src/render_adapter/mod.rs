@@ -1,0 +1,181 @@
+//! The only module that names Bevy's render internals: main world → render world → `rain_render`'s passes.
+//!
+//! | file | job |
+//! |---|---|
+//! | `extract.rs` | main world → render world, plain data |
+//! | `prepare.rs` | uploads and bind groups, once a frame |
+//! | `record.rs` | commands, once a view |
+//! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
+
+mod extract;
+mod prepare;
+mod record;
+mod wet_material;
+
+use bevy::asset::RenderAssetUsages;
+use bevy::core_pipeline::Core3dSystems;
+use bevy::core_pipeline::core_3d::main_transparent_pass_3d;
+use bevy::core_pipeline::schedule::Core3d;
+use bevy::image::Image;
+use bevy::prelude::*;
+use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
+use bevy::render::render_resource::{
+    Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+};
+use bevy::render::renderer::RenderAdapterInfo;
+use bevy::render::sync_component::SyncComponent;
+use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
+
+pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
+
+use crate::cover::RainCoverView;
+use crate::rainfall::SoftwareAdapter;
+use crate::report::RainReport;
+
+/// Images that receive measurement masks of a view; put on a camera with [`crate::rainfall::RainView`],
+/// `DepthPrepass` and `Msaa::Off`. Made with [`mask_image`].
+#[derive(Component, Clone, Debug)]
+pub struct RainMasks {
+    /// Coverage by streaks (R16Float).
+    pub rain: Handle<Image>,
+    /// Pore saturation (R32Float).
+    pub wet: Handle<Image>,
+    /// Distance from the eye, m (R32Float).
+    pub depth: Handle<Image>,
+}
+
+impl SyncComponent for RainCoverView {
+    type Target = Self;
+}
+
+impl ExtractComponent for RainCoverView {
+    type QueryData = &'static Self;
+    type QueryFilter = ();
+    type Out = Self;
+
+    fn extract_component(item: &Self) -> Option<Self> {
+        Some(*item)
+    }
+}
+
+/// An image without data for a GPU-only texture.
+fn gpu_image(label: &'static str, width: u32, height: u32, format: TextureFormat, usage: TextureUsages) -> Image {
+    Image {
+        data: None,
+        texture_descriptor: TextureDescriptor {
+            label: Some(label),
+            size: Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        },
+        asset_usage: RenderAssetUsages::RENDER_WORLD,
+        ..default()
+    }
+}
+
+/// The texture that keeps the cover map.
+pub(crate) fn cover_image(texels: u32) -> Image {
+    gpu_image(
+        "rain cover",
+        texels,
+        texels,
+        TextureFormat::Depth32Float,
+        TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+    )
+}
+
+/// Which mask an image is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MaskKind {
+    /// Coverage by streaks: half floats, 0…1.
+    Rain,
+    /// Pore saturation (floats, 0…1) or distance (floats, m).
+    Surface,
+}
+
+/// An image that a mask can be drawn into and read back from.
+#[must_use]
+pub fn mask_image(kind: MaskKind, width: u32, height: u32) -> Image {
+    let format = match kind {
+        MaskKind::Rain => TextureFormat::R16Float,
+        MaskKind::Surface => TextureFormat::R32Float,
+    };
+    gpu_image(
+        "rain mask",
+        width,
+        height,
+        format,
+        TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING,
+    )
+}
+
+/// Whether the rain can be drawn here, for apps and tests to ask.
+#[derive(Resource, Clone, Debug, PartialEq, Eq, Default)]
+pub enum RainRenderStatus {
+    /// No renderer in this app (a server): simulation and queries work, nothing is drawn.
+    #[default]
+    NoRenderer,
+    /// The passes are recorded when needed.
+    Ready {
+        /// The adapter's name.
+        adapter: String,
+        /// The adapter is software.
+        software: bool,
+    },
+}
+
+/// Connects the plugins' per-view inputs to Bevy's renderer.
+pub struct RainRenderPlugin;
+
+impl Plugin for RainRenderPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<RainReport>().init_resource::<RainRenderStatus>();
+        let report = app.world().resource::<RainReport>().clone();
+        if app.get_sub_app(RenderApp).is_none() {
+            return; // a server: the main-world half still works
+        }
+        app.add_plugins((
+            ExtractComponentPlugin::<RainCoverView>::default(),
+            wet_material::WetMaterialPlugin,
+        ));
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .insert_resource(report)
+            .init_gpu_resource::<prepare::RainGpu>()
+            .add_systems(ExtractSchedule, extract::extract_rain)
+            .add_systems(Render, prepare::prepare_rain.in_set(RenderSystems::PrepareBindGroups))
+            .add_systems(
+                Core3d,
+                (
+                    record::keep_cover_map
+                        .after(Core3dSystems::Prepass)
+                        .before(Core3dSystems::MainPass),
+                    record::rainfall
+                        .in_set(Core3dSystems::MainPass)
+                        .after(main_transparent_pass_3d),
+                ),
+            );
+    }
+
+    fn finish(&self, app: &mut App) {
+        let Some(info) = app.world().get_resource::<RenderAdapterInfo>() else {
+            return;
+        };
+        let software = info.device_type == wgpu::DeviceType::Cpu;
+        let status = RainRenderStatus::Ready {
+            adapter: info.name.clone(),
+            software,
+        };
+        app.insert_resource(status).insert_resource(SoftwareAdapter(software));
+    }
+}

@@ -1,0 +1,146 @@
+//! Uploads and bind groups, once a frame.
+
+use std::collections::HashMap;
+
+use bevy::core_pipeline::prepass::ViewPrepassTextures;
+use bevy::math::{DVec3, Mat4, Vec2, Vec3};
+use bevy::prelude::*;
+use bevy::render::camera::ExtractedCamera;
+use bevy::render::render_asset::RenderAssets;
+use bevy::render::renderer::{RenderDevice, RenderQueue};
+use bevy::render::storage::GpuShaderBuffer;
+use bevy::render::texture::GpuImage;
+use bevy::render::view::{ExtractedView, Msaa};
+use rain_render::cover::open_sky;
+use rain_render::gpu_types::SurfaceParams;
+use rain_render::masks::MaskGpu;
+use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
+
+use super::extract::{ExtractedRainScene, ExtractedRainView};
+use crate::report::RainReport;
+
+/// Everything on the GPU that lives with the device; rebuilt after a device loss.
+#[derive(Resource)]
+pub(super) struct RainGpu {
+    pub rainfall: RainfallGpu,
+    pub views: HashMap<Entity, RainfallViewGpu>,
+    pub masks: MaskGpu,
+    pub mask_bind_groups: HashMap<Entity, wgpu::BindGroup>,
+}
+
+impl FromWorld for RainGpu {
+    fn from_world(world: &mut World) -> Self {
+        let device = world.resource::<RenderDevice>().wgpu_device();
+        Self {
+            rainfall: RainfallGpu::new(device),
+            views: HashMap::new(),
+            masks: MaskGpu::new(device),
+            mask_bind_groups: HashMap::new(),
+        }
+    }
+}
+
+pub(super) fn prepare_rain(
+    mut gpu: ResMut<RainGpu>,
+    scene: Option<Res<ExtractedRainScene>>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+    images: Res<RenderAssets<GpuImage>>,
+    buffers: Res<RenderAssets<GpuShaderBuffer>>,
+    report: Res<RainReport>,
+    views: Query<(
+        Entity,
+        &ExtractedView,
+        &ExtractedCamera,
+        &ExtractedRainView,
+        Option<&ViewPrepassTextures>,
+        &Msaa,
+    )>,
+) {
+    let Some(scene) = scene else { return };
+    let gpu = &mut *gpu;
+    let device = device.wgpu_device();
+    let cover_image = images.get(scene.cover_image);
+    let cover_at = |eye: DVec3| match (scene.cover, cover_image) {
+        (Some(placement), Some(_)) => placement.params(eye),
+        _ => open_sky(),
+    };
+    let surface_params = |eye: Vec3| SurfaceParams {
+        eye: eye.extend(0.0).to_array(),
+        state: scene.surface.to_array(),
+        cover: cover_at(eye.as_dvec3()),
+    };
+    if scene.wet
+        && let Some(buffer) = buffers.get(scene.surface_buffer)
+    {
+        let params = surface_params(scene.anchor);
+        queue.write_buffer(&buffer.buffer, 0, bytemuck::bytes_of(&params));
+    }
+    gpu.mask_bind_groups.clear();
+    gpu.views.retain(|entity, _| views.contains(*entity));
+    for (entity, view, camera, rain, prepass, msaa) in &views {
+        let eye = view.world_from_view.translation();
+        let rotation = view.world_from_view.rotation();
+        let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32);
+        let scene_depth: Option<&wgpu::TextureView> = match (msaa, prepass.and_then(ViewPrepassTextures::depth_view)) {
+            (Msaa::Off, Some(depth)) => Some(depth),
+            _ => None,
+        };
+        let near = view.clip_from_view.w_axis.z;
+        if let (Some(_), Some(depth), Some(cover)) = (&rain.masks, scene_depth, cover_image) {
+            let clip_from_eye = view.clip_from_view * Mat4::from_quat(rotation.inverse());
+            let bind_group = gpu.masks.prepare(
+                device,
+                &queue,
+                clip_from_eye.inverse(),
+                near,
+                size,
+                surface_params(eye),
+                depth,
+                &cover.texture_view,
+            );
+            gpu.mask_bind_groups.insert(entity, bind_group);
+        }
+        let Some(shutter) = rain.shutter else { continue };
+        gpu.rainfall
+            .prepare_pipelines(device, view.target_format, msaa.samples(), rain.masks.is_some());
+        let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
+        let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
+        let input = RainfallInput {
+            container: &rain.container,
+            seed: rain.seed,
+            clip_from_eye: view.clip_from_view * now,
+            clip_from_eye_before: view.clip_from_view * before,
+            eye_velocity_m_s: rain.motion.velocity_m_s.as_vec3(),
+            viewport_px: size,
+            focal_px: rain.focal_px,
+            near_m: near,
+            shutter: rain_render::rainfall::Shutter {
+                soft_m: if scene_depth.is_some() { shutter.soft_m } else { 0.0 },
+                ..shutter
+            },
+            lighting: Lighting {
+                environment_scale: environment.as_ref().map_or(0.0, |(_, scale)| scale * camera.exposure),
+                environment_max_level: environment
+                    .as_ref()
+                    .map_or(0.0, |(image, _)| image.texture_descriptor.mip_level_count.saturating_sub(1) as f32),
+                ambient: scene.ambient * camera.exposure,
+                sun_direction: scene.sun_direction,
+                sun: scene.sun * camera.exposure,
+            },
+            cover: cover_at(eye.as_dvec3()),
+        };
+        let textures = RainfallTextures {
+            cover: cover_image.map(|i| -> &wgpu::TextureView { &i.texture_view }),
+            scene_depth,
+            environment: environment.as_ref().map(|(i, _)| -> &wgpu::TextureView { &i.texture_view }),
+        };
+        let slot = gpu.views.entry(entity).or_insert_with(|| RainfallViewGpu::new(device));
+        slot.prepare(device, &queue, &gpu.rainfall, &input, textures);
+    }
+    let cover_bytes = cover_image.map_or(0, |i| {
+        i.texture_descriptor.size.width as usize * i.texture_descriptor.size.height as usize * 4
+    });
+    report.gpu_memory(cover_bytes + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>());
+}
+

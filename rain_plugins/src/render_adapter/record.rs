@@ -1,0 +1,127 @@
+//! Commands of each view. Every recorded pass is counted here and nowhere else.
+
+use std::sync::atomic::Ordering::Relaxed;
+
+use bevy::prelude::*;
+use bevy::render::diagnostic::RecordDiagnostics;
+use bevy::render::render_asset::RenderAssets;
+use bevy::render::render_resource::{PipelineCache, StoreOp};
+use bevy::render::renderer::{RenderContext, ViewQuery};
+use bevy::render::texture::GpuImage;
+use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
+use rain_render::rainfall::{encode_coverage, encode_draw, encode_project};
+
+use super::extract::{ExtractedRainScene, ExtractedRainView};
+use super::prepare::RainGpu;
+use crate::cover::RainCoverView;
+use crate::report::{PassName, RainReport};
+
+/// Copies the cover view's depth into the map that everybody reads: views share and recycle their own textures.
+pub(super) fn keep_cover_map(
+    view: ViewQuery<&ViewDepthTexture, With<RainCoverView>>,
+    scene: Option<Res<ExtractedRainScene>>,
+    images: Res<RenderAssets<GpuImage>>,
+    pipelines: Res<PipelineCache>,
+    report: Res<RainReport>,
+    mut ctx: RenderContext,
+) {
+    let depth = view.into_inner();
+    let Some(scene) = scene.filter(|s| s.redraw) else {
+        return;
+    };
+    let Some(map) = images.get(scene.cover_image) else {
+        return;
+    };
+    let source: &wgpu::Texture = &depth.texture;
+    let target: &wgpu::Texture = &map.texture;
+    if source.size() != target.size() {
+        return;
+    }
+    ctx.command_encoder().copy_texture_to_texture(
+        source.as_image_copy(),
+        target.as_image_copy(),
+        source.size(),
+    );
+    // A mesh whose pipeline is still being compiled is missing from this map: it will be drawn again.
+    scene.complete.store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
+    report.recorded(PassName::Cover);
+}
+
+/// Projects and draws a view's streaks over its colour target, and its masks where somebody asked for them.
+pub(super) fn rainfall(
+    view: ViewQuery<(Entity, &ExtractedView, &ExtractedRainView, &ViewTarget, &ViewDepthTexture, &Msaa)>,
+    gpu: Res<RainGpu>,
+    images: Res<RenderAssets<GpuImage>>,
+    report: Res<RainReport>,
+    mut ctx: RenderContext,
+) {
+    let (entity, view, rain, target, depth, msaa) = view.into_inner();
+    let recorder = ctx.diagnostic_recorder();
+    let recorder = recorder.as_deref();
+    let view_gpu = gpu.views.get(&entity).filter(|v| rain.shutter.is_some() && v.drops() > 0);
+
+    if let Some(view_gpu) = view_gpu {
+        let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("rain_rainfall_project"),
+            timestamp_writes: None,
+        });
+        let span = recorder.pass_span(&mut pass, "rain_rainfall_project");
+        encode_project(&mut pass, &gpu.rainfall, view_gpu);
+        span.end(&mut pass);
+        drop(pass);
+
+        let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("rain_rainfall"),
+            color_attachments: &[Some(target.get_color_attachment())],
+            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let span = recorder.pass_span(&mut pass, "rain_rainfall");
+        encode_draw(&mut pass, &gpu.rainfall, view_gpu, view.target_format, msaa.samples());
+        span.end(&mut pass);
+        drop(pass);
+        report.recorded(PassName::Rainfall);
+        report.drops(view_gpu.drops());
+    }
+
+    let Some(masks) = &rain.masks else { return };
+    let (Some(rain_mask), Some(wet_mask), Some(depth_mask)) =
+        (images.get(&masks.rain), images.get(&masks.wet), images.get(&masks.depth))
+    else {
+        return;
+    };
+    if *msaa != Msaa::Off {
+        return;
+    }
+    let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("rain_mask_coverage"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &rain_mask.texture_view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    if let Some(view_gpu) = view_gpu {
+        encode_coverage(&mut pass, &gpu.rainfall, view_gpu, msaa.samples());
+    }
+    drop(pass);
+    if let Some(bind_group) = gpu.mask_bind_groups.get(&entity) {
+        gpu.masks.encode(
+            ctx.command_encoder(),
+            bind_group,
+            &wet_mask.texture_view,
+            &depth_mask.texture_view,
+        );
+    }
+    report.recorded(PassName::Masks);
+}

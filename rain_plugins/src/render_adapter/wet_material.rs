@@ -1,0 +1,74 @@
+//! `StandardMaterial` extended by wetness.
+
+use bevy::asset::{Assets, embedded_asset};
+use bevy::pbr::{ExtendedMaterial, MaterialExtension, MaterialPlugin};
+use bevy::prelude::*;
+use bevy::render::render_resource::AsBindGroup;
+use bevy::render::storage::ShaderBuffer;
+use bevy::shader::{Shader, ShaderRef};
+use rain_render::compose;
+use rain_render::gpu_types::SurfaceParams;
+
+/// A material that gets wet.
+pub type WetMaterial = ExtendedMaterial<StandardMaterial, WetSurface>;
+
+/// The extension: how strongly a material takes water, and where the shader finds the state of the world.
+#[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
+pub struct WetSurface {
+    /// x: strength 0…1; y: porosity 0…1, below 0: guessed from roughness and metalness.
+    #[uniform(100)]
+    pub wetting: Vec4,
+    /// The cover map.
+    #[texture(101, sample_type = "depth")]
+    pub cover: Handle<Image>,
+    /// [`SurfaceParams`].
+    #[storage(102, read_only)]
+    pub params: Handle<ShaderBuffer>,
+}
+
+impl MaterialExtension for WetSurface {
+    fn fragment_shader() -> ShaderRef {
+        "embedded://rain_plugins/render_adapter/shaders/wet_surface.wgsl".into()
+    }
+
+    fn deferred_fragment_shader() -> ShaderRef {
+        "embedded://rain_plugins/render_adapter/shaders/wet_surface.wgsl".into()
+    }
+}
+
+/// Keeps the shader library and the parameter buffer alive.
+#[derive(Resource, Clone, Debug)]
+pub struct WetSurfaceHandles {
+    _library: Handle<Shader>,
+    /// The buffer behind [`WetSurface::params`].
+    pub params: Handle<ShaderBuffer>,
+}
+
+pub(super) struct WetMaterialPlugin;
+
+impl Plugin for WetMaterialPlugin {
+    fn build(&self, app: &mut App) {
+        embedded_asset!(app, "shaders/wet_surface.wgsl");
+        let mut source = String::from("#define_import_path rain::surface\n");
+        source.push_str(compose::TYPES);
+        for library in compose::LIBRARIES {
+            if ["cover", "wetness"].contains(&library.name) {
+                source.push_str(library.source);
+            }
+        }
+        let library = app
+            .world_mut()
+            .resource_mut::<Assets<Shader>>()
+            .add(Shader::from_wgsl(source, "rain/surface.wgsl"));
+        let zero = vec![0; size_of::<SurfaceParams>()];
+        let params = app
+            .world_mut()
+            .resource_mut::<Assets<ShaderBuffer>>()
+            .add(ShaderBuffer::new(&zero, bevy::asset::RenderAssetUsages::default()));
+        app.insert_resource(WetSurfaceHandles {
+            _library: library,
+            params,
+        });
+        app.add_plugins(MaterialPlugin::<WetMaterial>::default());
+    }
+}

@@ -1,0 +1,133 @@
+//! What was recorded, what was skipped, and why.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use bevy::prelude::*;
+
+/// The passes of a frame, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Reflect)]
+pub enum PassName {
+    /// Depth along the rain.
+    Cover,
+    /// Streaks near the eye.
+    Rainfall,
+    /// Measurement masks (only when asked for).
+    Masks,
+}
+
+impl PassName {
+    /// The name in reports and timing spans.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Cover => "cover",
+            Self::Rainfall => "rainfall",
+            Self::Masks => "masks",
+        }
+    }
+}
+
+/// Why a pass was not recorded in a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Reflect)]
+pub enum SkipReason {
+    /// Nothing falls and nothing is wet.
+    Dry,
+    /// Nothing falls.
+    NoRain,
+    /// The view's air is closed in: no rain can be in sight.
+    Indoors,
+    /// Nothing that covers has moved; the kept map is used.
+    NothingMoved,
+    /// No camera carries a `RainView`, or it is inactive.
+    NoView,
+    /// Turned off by a setting.
+    Disabled,
+    /// The view's projection or sample count is not supported by the pass.
+    Unsupported,
+}
+
+impl SkipReason {
+    /// The reason in reports.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Dry => "dry",
+            Self::NoRain => "no rain",
+            Self::Indoors => "indoors",
+            Self::NothingMoved => "nothing moved",
+            Self::NoView => "no view",
+            Self::Disabled => "disabled",
+            Self::Unsupported => "unsupported view",
+        }
+    }
+}
+
+/// One pass over the frames so far.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PassRecord {
+    /// Frames in which its commands were recorded.
+    pub recorded: u64,
+    /// Frames in which they were not, by reason.
+    pub skipped: BTreeMap<SkipReason, u64>,
+}
+
+/// What the rain passes did: shared by the main and the render world.
+///
+/// `recorded` is counted where the commands are recorded, so a test that reads it counts passes, not flags.
+#[derive(Resource, Clone, Default, Debug)]
+pub struct RainReport(Arc<Mutex<Report>>);
+
+/// The report's content.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// One entry for each pass that has been considered.
+    pub passes: BTreeMap<PassName, PassRecord>,
+    /// Drops handed to the GPU, for each frame that drew rain.
+    pub drops: Vec<u32>,
+    /// GPU memory of the rain's own buffers and textures. Units: bytes.
+    pub gpu_memory_bytes: usize,
+}
+
+impl RainReport {
+    fn lock(&self) -> MutexGuard<'_, Report> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Counts a recorded pass.
+    pub fn recorded(&self, pass: PassName) {
+        self.lock().passes.entry(pass).or_default().recorded += 1;
+    }
+
+    /// Counts a skipped pass.
+    pub fn skipped(&self, pass: PassName, reason: SkipReason) {
+        *self.lock().passes.entry(pass).or_default().skipped.entry(reason).or_default() += 1;
+    }
+
+    /// Notes how many drops a frame drew.
+    pub fn drops(&self, count: u32) {
+        self.lock().drops.push(count);
+    }
+
+    /// Notes the GPU memory in use.
+    pub fn gpu_memory(&self, bytes: usize) {
+        self.lock().gpu_memory_bytes = bytes;
+    }
+
+    /// A copy of the counters.
+    #[must_use]
+    pub fn snapshot(&self) -> Report {
+        self.lock().clone()
+    }
+
+    /// Frames in which `pass` was recorded.
+    #[must_use]
+    pub fn recorded_frames(&self, pass: PassName) -> u64 {
+        self.lock().passes.get(&pass).map_or(0, |p| p.recorded)
+    }
+
+    /// Sets every counter to zero.
+    pub fn reset(&self) {
+        *self.lock() = Report::default();
+    }
+}

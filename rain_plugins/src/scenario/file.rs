@@ -1,0 +1,539 @@
+//! The scenario file: what RON text may say, with units, domains and defaults.
+//!
+//! Every struct refuses unknown fields and fills missing ones with the stated default. Optional values are written
+//! without `Some(…)`, and a variant that holds a struct is written without the inner pair of parentheses:
+//!
+//! ```ron
+//! (
+//!     name: "storm",
+//!     duration_s: 600,
+//!     scene: "street.glb",
+//!     environment: (sky: Overcast(zenith_luminance_cd_m2: 3000, skyline_deg: 12)),
+//!     weather: (keys: [(time_s: 0, intensity_mm_h: 0), (time_s: 60, intensity_mm_h: 25)]),
+//!     camera: (keys: [(time_s: 0, eye: (0, 1.7, 8), target: (0, 1.5, 0))]),
+//!     captures: Even(start_s: 60, end_s: 600, count: 12),
+//!     outputs: (masks: [Rain, Wet, Depth]),
+//!     expectations: [(text: "it rains", check: Mask(mask: Rain, statistic: Mean), at: Last, min: 0.001)],
+//! )
+//! ```
+//!
+//! World coordinates are metres, Y up. Times are seconds from the scenario's start.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Deserializer, Serialize, de};
+
+use super::expectation::Expectation;
+use super::weather::Weather;
+
+/// A point or vector: x, y (up), z. Units: metres, or m/s for velocities.
+pub type Vector = [f64; 3];
+
+/// A colour as linear Rec. 709 red, green, blue. Units: none.
+pub type Tint = [f64; 3];
+
+/// One scenario. Load it with [`Scenario::load`](Scenario::load), which also validates it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Scenario {
+    /// Name for reports and titles. Default: empty, which loading replaces by the file's stem.
+    pub name: String,
+    /// Seed of every random choice. Domain: any. Default: 1.
+    pub seed: u64,
+    /// Length of the run. Units: s. Domain: (0, 2 592 000] (30 days). Default: 600.
+    pub duration_s: f64,
+    /// What stands in the world: a single file name, or a list of parts. Domain: at most 4096 parts. Default: none.
+    #[serde(deserialize_with = "file_or_parts")]
+    pub scene: Vec<ScenePart>,
+    /// Sky, sun, lamps, fog and exposure.
+    pub environment: Environment,
+    /// Rain, wind and air over time.
+    pub weather: Weather,
+    /// What drives through the scene. Domain: at most 256. Default: none.
+    pub vehicles: Vec<Vehicle>,
+    /// Where the camera is and what it looks at.
+    pub camera: Camera,
+    /// How rain is drawn.
+    pub rain: RainSettings,
+    /// When pictures are taken. Default: none.
+    pub captures: Captures,
+    /// What is written.
+    pub outputs: Outputs,
+    /// Horizontal bounds of the water ledger. Default: those of the scene.
+    pub domain: Option<Domain>,
+    /// Frames rendered before each capture, so that pipelines, shadows and maps have settled. Domain: 0…1000.
+    /// Default: 3.
+    pub warm_up_frames: u32,
+    /// What must hold, or `rain run` exits with 1. Domain: at most 10 000. Default: none.
+    pub expectations: Vec<Expectation>,
+    /// Folder of the scenario file: where relative file names start. Not part of the file.
+    #[serde(skip)]
+    pub folder: PathBuf,
+}
+
+impl Default for Scenario {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            seed: 1,
+            duration_s: 600.0,
+            scene: Vec::new(),
+            environment: Environment::default(),
+            weather: Weather::default(),
+            vehicles: Vec::new(),
+            camera: Camera::default(),
+            rain: RainSettings::default(),
+            captures: Captures::default(),
+            outputs: Outputs::default(),
+            domain: None,
+            warm_up_frames: 3,
+            expectations: Vec::new(),
+            folder: PathBuf::new(),
+        }
+    }
+}
+
+/// A glTF file at a place in the world.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ScenePart {
+    /// glTF or GLB file, relative to the scenario (or to `--assets`). Required.
+    pub file: String,
+    /// Name of the part. Default: empty (the file's stem).
+    pub name: String,
+    /// Where its origin goes. Units: m. Domain: each within ±1 000 000. Default: (0, 0, 0).
+    pub translation: Vector,
+    /// Turn about the vertical, from +Z towards +X. Units: degrees. Domain: ±36 000. Default: 0.
+    pub yaw_deg: f64,
+    /// Uniform scale. Units: none. Domain: [0.0001, 10 000]. Default: 1.
+    pub scale: f64,
+}
+
+impl Default for ScenePart {
+    fn default() -> Self {
+        Self {
+            file: String::new(),
+            name: String::new(),
+            translation: [0.0; 3],
+            yaw_deg: 0.0,
+            scale: 1.0,
+        }
+    }
+}
+
+impl ScenePart {
+    /// The file at the origin, unturned, at its own scale.
+    #[must_use]
+    pub fn from_file(file: impl Into<String>) -> Self {
+        Self {
+            file: file.into(),
+            ..Self::default()
+        }
+    }
+}
+
+fn file_or_parts<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ScenePart>, D::Error> {
+    struct FileOrParts;
+    impl<'de> de::Visitor<'de> for FileOrParts {
+        type Value = Vec<ScenePart>;
+        fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+            f.write_str("a file name in quotes or a list of parts [(file: …), …]")
+        }
+        fn visit_str<E: de::Error>(self, file: &str) -> Result<Self::Value, E> {
+            Ok(vec![ScenePart::from_file(file)])
+        }
+        fn visit_seq<A: de::SeqAccess<'de>>(self, mut parts: A) -> Result<Self::Value, A::Error> {
+            let mut all = Vec::new();
+            while let Some(part) = parts.next_element()? {
+                all.push(part);
+            }
+            Ok(all)
+        }
+    }
+    deserializer.deserialize_any(FileOrParts)
+}
+
+/// Light and air that are not rain.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Environment {
+    /// The generated sky. Default: overcast.
+    pub sky: Sky,
+    /// Camera exposure for ISO 100. Units: EV. Domain: [-10, 25]. Default: 12 (overcast day).
+    pub exposure_ev100: f64,
+    /// The sun, where it shines through. Default: none, as befits rain.
+    pub sun: Option<Sun>,
+    /// Factor on the punctual lights that glTF files carry. Units: none. Domain: [0, 1000]. Default: 1.
+    pub lamps: f64,
+    /// Distance at which contrast falls to 2 % in fog alone, without rain. Units: m. Domain: [1, 1 000 000].
+    /// Default: no fog.
+    pub fog_visibility_m: Option<f64>,
+    /// Whether bright lights bleed in the camera. Default: true.
+    pub bloom: bool,
+}
+
+impl Default for Environment {
+    fn default() -> Self {
+        Self {
+            sky: Sky::default(),
+            exposure_ev100: 12.0,
+            sun: None,
+            lamps: 1.0,
+            fog_visibility_m: None,
+            bloom: true,
+        }
+    }
+}
+
+/// The kind of sky.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Sky {
+    /// Closed cloud, brighter towards the zenith.
+    Overcast(OvercastSky),
+}
+
+impl Default for Sky {
+    fn default() -> Self {
+        Self::Overcast(OvercastSky::default())
+    }
+}
+
+/// CIE overcast sky (Moon & Spencer 1942): L(e) = L_z (1 + 2 sin e)/3 at elevation e.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OvercastSky {
+    /// Luminance at the zenith. Units: cd/m². Domain: [0, 100 000]. Default: 3000 (7330 lx on open ground).
+    pub zenith_luminance_cd_m2: f64,
+    /// Colour of the cloud; only its ratios count, the luminance is the one above. Units: linear RGB. Domain: each
+    /// [0, 10], not all 0. Default: (0.93, 0.98, 1.08), slightly blue-grey.
+    pub tint: Tint,
+    /// Luminance at the zenith divided by that at the horizon. Units: none. Domain: [0.1, 100]. Default: 3 (CIE);
+    /// 1 is a uniform sky.
+    pub zenith_to_horizon: f64,
+    /// Relative amplitude of brighter and darker clouds, from the scenario's seed. Units: none. Domain: [0, 0.5].
+    /// Default: 0.04. Chosen by eye: at 0 puddles look like flat grey paint, above 0.15 the sky looks broken.
+    pub cloud_contrast: f64,
+    /// Height of the tallest house fronts that stand around the horizon of the *reflection* environment, so that wet
+    /// ground has something to mirror at grazing angles. Units: degrees. Domain: [0, 60]. Default: 0 (none).
+    pub skyline_deg: f64,
+    /// Reflectance of those fronts. Units: linear RGB. Domain: each [0, 1]. Default: (0.24, 0.22, 0.20).
+    pub skyline_tint: Tint,
+    /// Reflectance of the ground below the horizon, lit by this sky. Units: linear RGB. Domain: each [0, 1]. Default:
+    /// (0.10, 0.10, 0.10), wet road and grass.
+    pub ground_tint: Tint,
+}
+
+impl Default for OvercastSky {
+    fn default() -> Self {
+        Self {
+            zenith_luminance_cd_m2: 3000.0,
+            tint: [0.93, 0.98, 1.08],
+            zenith_to_horizon: 3.0,
+            cloud_contrast: 0.04,
+            skyline_deg: 0.0,
+            skyline_tint: [0.24, 0.22, 0.20],
+            ground_tint: [0.10, 0.10, 0.10],
+        }
+    }
+}
+
+/// A directional light.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sun {
+    /// Where the light goes (from the sun to the ground); its length does not count. Domain: not zero. Default:
+    /// (0.4, -1, 0.3).
+    pub direction: Vector,
+    /// Illuminance on a plane across the light. Units: lx. Domain: [0, 200 000]. Default: 10 000.
+    pub illuminance_lux: f64,
+}
+
+impl Default for Sun {
+    fn default() -> Self {
+        Self {
+            direction: [0.4, -1.0, 0.3],
+            illuminance_lux: 10_000.0,
+        }
+    }
+}
+
+/// How the way between two keys is walked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Interpolation {
+    /// Straight pieces at constant velocity. The default.
+    #[default]
+    Linear,
+    /// A cubic through the keys with continuous velocity (Catmull & Rom 1974, tangents for uneven times).
+    CatmullRom,
+}
+
+/// Something on wheels that follows a path. Its model faces +Z; the path turns it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Vehicle {
+    /// Name that the camera and reports use. Domain: not empty, unique. Required.
+    pub name: String,
+    /// glTF or GLB file, relative to the scenario (or to `--assets`). Required.
+    pub file: String,
+    /// Uniform scale. Units: none. Domain: [0.0001, 10 000]. Default: 1.
+    pub scale: f64,
+    /// Where it is when. Times rise strictly; it stands before the first and after the last. Domain: 1…100 000 keys.
+    pub path: Vec<PathKey>,
+    /// How it gets from key to key. Default: `Linear`.
+    pub interpolation: Interpolation,
+    /// How the names of wheel nodes begin. Default: `"wheel"`.
+    pub wheel_prefix: String,
+    /// Radius of the wheels after scaling: what turns distance into rotation. Units: m. Domain: [0.01, 10].
+    /// Default: 0.33.
+    pub wheel_radius_m: f64,
+    /// Whether its headlights are on. Default: false.
+    pub headlights: bool,
+}
+
+impl Default for Vehicle {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            file: String::new(),
+            scale: 1.0,
+            path: Vec::new(),
+            interpolation: Interpolation::Linear,
+            wheel_prefix: "wheel".into(),
+            wheel_radius_m: 0.33,
+            headlights: false,
+        }
+    }
+}
+
+/// A vehicle's place at a time.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PathKey {
+    /// When. Units: s. Domain: [-2 592 000, 2 592 000]. Default: 0.
+    pub time_s: f64,
+    /// Where the model's origin is. Units: m. Domain: each within ±1 000 000. Default: (0, 0, 0).
+    pub position: Vector,
+}
+
+/// The camera: on its own path (`keys`) or on a vehicle (`attached`), not both. With neither it stands at
+/// (8, 3, 8) and looks at (0, 1, 0).
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Camera {
+    /// The camera's own path; it stands before the first key and after the last. Times rise strictly. Domain: at most
+    /// 100 000 keys. Default: none.
+    pub keys: Vec<CameraKey>,
+    /// How it gets from key to key. Default: `Linear`.
+    pub interpolation: Interpolation,
+    /// Rides on a vehicle instead. Default: none.
+    pub attached: Option<Attached>,
+}
+
+/// A camera pose at a time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CameraKey {
+    /// When. Units: s. Domain: [-2 592 000, 2 592 000]. Default: 0.
+    pub time_s: f64,
+    /// Where the camera is. Units: m. Domain: each within ±1 000 000. Default: (8, 3, 8).
+    pub eye: Vector,
+    /// What it looks at; not the eye itself. Units: m. Domain: each within ±1 000 000. Default: (0, 1, 0).
+    pub target: Vector,
+    /// Vertical field of view. Units: degrees. Domain: [1, 170]. Default: 50.
+    pub fov_y_deg: f64,
+    /// Whether the camera jumps here: until this key's time it stays at the one before. Default: false.
+    pub cut: bool,
+}
+
+impl Default for CameraKey {
+    fn default() -> Self {
+        Self {
+            time_s: 0.0,
+            eye: [8.0, 3.0, 8.0],
+            target: [0.0, 1.0, 0.0],
+            fov_y_deg: 50.0,
+            cut: false,
+        }
+    }
+}
+
+/// A camera that rides on a vehicle. Offsets are in the vehicle's frame: +Z ahead, +Y up, +X to its left.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Attached {
+    /// Name of the vehicle. Domain: one in the list. Required.
+    pub vehicle: String,
+    /// The eye, from the vehicle's origin. Units: m. Domain: each within ±1000. Default: (0, 2.5, -7).
+    pub eye_offset: Vector,
+    /// What it looks at, from the vehicle's origin. Units: m. Domain: each within ±1000. Default: (0, 1, 4).
+    pub target_offset: Vector,
+    /// Vertical field of view. Units: degrees. Domain: [1, 170]. Default: 50.
+    pub fov_y_deg: f64,
+}
+
+impl Default for Attached {
+    fn default() -> Self {
+        Self {
+            vehicle: String::new(),
+            eye_offset: [0.0, 2.5, -7.0],
+            target_offset: [0.0, 1.0, 4.0],
+            fov_y_deg: 50.0,
+        }
+    }
+}
+
+/// How rain is drawn. Nothing here changes where drops are, masks, haze, wetness or the water ledger.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RainSettings {
+    /// Whether the rain plugins are in the scene at all; `false` is the scene without them. Default: true.
+    pub enabled: bool,
+    /// Most quads drawn for single streaks. Domain: 0…4 000 000. Default: 200 000.
+    pub streak_budget: u32,
+    /// Gain on streak contrast, α′ = 1 − (1 − α)^contrast. Units: none. Domain: [1, 32]; 1 is physical. Default: 4.
+    pub contrast: f64,
+    /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0001, 1].
+    /// Default: 1/60.
+    pub exposure_s: f64,
+}
+
+impl Default for RainSettings {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            streak_budget: 200_000,
+            contrast: 4.0,
+            exposure_s: 1.0 / 60.0,
+        }
+    }
+}
+
+/// When pictures are taken. Domain: at most 10 000, strictly rising, within the duration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Captures {
+    /// At these times. Units: s.
+    Times(Vec<f64>),
+    /// Evenly, both ends included; a single one is taken at the start.
+    Even {
+        /// The first. Units: s. Domain: [0, `end_s`].
+        start_s: f64,
+        /// The last. Units: s. Domain: [`start_s`, `duration_s`].
+        end_s: f64,
+        /// How many. Domain: 0…10 000.
+        count: u32,
+    },
+}
+
+impl Default for Captures {
+    fn default() -> Self {
+        Self::Times(Vec::new())
+    }
+}
+
+impl Captures {
+    /// How many captures there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Times(times) => times.len(),
+            Self::Even { count, .. } => *count as usize,
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The times, in order. Units: s.
+    #[must_use]
+    pub fn times_s(&self) -> Vec<f64> {
+        match self {
+            Self::Times(times) => times.clone(),
+            Self::Even { start_s, end_s, count } => (0..*count)
+                .map(|i| match count.saturating_sub(1) {
+                    0 => *start_s,
+                    // The last is the end itself, not the end with a rounding error past the duration.
+                    last if i == last => *end_s,
+                    last => start_s + (end_s - start_s) * f64::from(i) / f64::from(last),
+                })
+                .collect(),
+        }
+    }
+
+    /// `count` captures spread evenly from the first of these to the last (`rain run --frames`); with none here, over
+    /// the whole duration.
+    #[must_use]
+    pub fn resampled(&self, count: u32, duration_s: f64) -> Self {
+        let times = self.times_s();
+        Self::Even {
+            start_s: times.first().copied().unwrap_or(0.0),
+            end_s: times.last().copied().unwrap_or(duration_s),
+            count,
+        }
+    }
+}
+
+/// A picture of numbers, one per pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Mask {
+    /// Share of the pixel covered by streaks and billboards (no time fraction, no contrast). Units: none, [0, 1].
+    Rain,
+    /// Pore saturation. Units: none, [0, 1].
+    Wet,
+    /// Distance from the eye. Units: m, saturating at 65.535.
+    Depth,
+}
+
+impl Mask {
+    /// The word in file names: `frame_0000_rain.png`.
+    #[must_use]
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Rain => "rain",
+            Self::Wet => "wet",
+            Self::Depth => "depth",
+        }
+    }
+}
+
+/// What is written beside `report.json`, which always is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Outputs {
+    /// Width and height of the pictures. Units: pixels. Domain: each 1…8192. Default: (1280, 720).
+    pub size: [u32; 2],
+    /// Whether `frame_0000.png` … are written. Default: true.
+    pub frames: bool,
+    /// Masks written for each capture. Domain: each at most once. Default: none.
+    pub masks: Vec<Mask>,
+    /// Whether `contact.png` is written: all captures small, with captions. Default: true.
+    pub contact_sheet: bool,
+    /// Whether `timeline.png` is written: intensity, wetness, level and budget over time. Default: true.
+    pub timeline: bool,
+}
+
+impl Default for Outputs {
+    fn default() -> Self {
+        Self {
+            size: [1280, 720],
+            frames: true,
+            masks: Vec::new(),
+            contact_sheet: true,
+            timeline: true,
+        }
+    }
+}
+
+/// A horizontal rectangle, as (x, z). Units: m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Least x and z. Domain: each within ±1 000 000.
+    pub min: [f64; 2],
+    /// Greatest x and z. Domain: each above `min`, and at most 100 000 m from it.
+    pub max: [f64; 2],
+}

@@ -1,0 +1,39 @@
+//! Scenarios: a RON file in, a headless Bevy app with the rain plugins, pictures and a report out.
+//!
+//! | file | concept |
+//! |---|---|
+//! | `file.rs`, `weather.rs`, `expectation.rs` | what the file may say |
+//! | `load.rs`, `validate.rs`, `locate.rs`, `error.rs` | reading it, with line and column of what is wrong |
+//! | `path.rs` | vehicles and cameras as functions of time |
+//! | `headless.rs`, `stage.rs`, `session.rs` | the app, its world, its clock |
+//! | `sky.rs` | the generated sky environment |
+//! | `run.rs` | from file to results |
+//! | `masks.rs`, `contact.rs`, `plot.rs`, `font.rs`, `report.rs`, `output.rs` | the results |
+//! | `expect.rs`, `timeline.rs` | what was expected and what came out |
+
+pub mod contact;
+pub mod error;
+pub mod expect;
+pub mod expectation;
+pub mod file;
+mod font;
+pub mod headless;
+mod load;
+mod locate;
+pub mod masks;
+pub mod output;
+pub mod path;
+pub mod plot;
+pub mod report;
+pub mod run;
+pub mod session;
+pub mod sky;
+mod stage;
+pub mod timeline;
+pub mod validate;
+pub mod weather;
+
+pub use error::ScenarioError;
+pub use file::Scenario;
+pub use run::{Progress, RunError, RunOptions, run};
+pub use session::{Capture, Session};

@@ -1,0 +1,11 @@
+//! Wet surfaces: every `StandardMaterial` in the scene gets wet by itself where rain reaches it.
+//!
+//! While the scene is dry and settled, meshes keep their own material and cost nothing more. At first wetness each is
+//! given an extended copy that reads the cover map and the weather's wetness; when all has dried the originals return.
+//! Changes that the app makes to the originals meanwhile are followed.
+
+mod materials;
+mod state;
+
+pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
+pub use state::SurfaceState;

@@ -1,0 +1,38 @@
+// The frozen drop field, as rain_core::rainfall computes it.
+
+// `stream` is the class's random stream, `cell` the absolute lattice cell.
+fn rain_cell_key(stream: vec3<u32>, cell: vec3<i32>) -> vec3<u32> {
+    return rain_pcg3d(stream ^ bitcast<vec3<u32>>(cell));
+}
+
+// Hash of drop `index`: rank increment, diameter, unused.
+fn rain_drop_marks(key: vec3<u32>, index: u32) -> vec3<u32> {
+    return rain_pcg3d(vec3<u32>(key.x ^ (index * 0x9E3779B9u), key.y + index, key.z));
+}
+
+// Place inside the cell, in cells.
+fn rain_drop_place(key: vec3<u32>, index: u32) -> vec3<f32> {
+    let h = rain_pcg3d(vec3<u32>(key.y ^ (index * 0x85EBCA6Bu), key.z + index, key.x));
+    return vec3<f32>(rain_unit(h.x), rain_unit(h.y), rain_unit(h.z));
+}
+
+// Inverse of the reference distribution inside a class, mm.
+fn rain_diameter_mm(exp_min: f32, exp_span: f32, u: f32) -> f32 {
+    return -0.5 * log(exp_min - u * exp_span);
+}
+
+// Terminal velocity of a diameter in mm, m/s: least squares to Gunn & Kinzer 1949.
+fn rain_terminal_velocity(diameter_mm: f32) -> f32 {
+    let d = min(diameter_mm, 5.8);
+    let t = d / 3.0 - 1.0;
+    var p = -1.875321;
+    p = p * t + 3.065767;
+    p = p * t + 0.2226069;
+    p = p * t - 2.31128;
+    p = p * t + 0.7087815;
+    p = p * t + 0.3041052;
+    p = p * t + 0.307166;
+    p = p * t - 1.586889;
+    p = p * t + 2.689075;
+    return d * p;
+}

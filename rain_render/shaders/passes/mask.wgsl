@@ -1,0 +1,52 @@
+// Wetness and distance of each pixel, from the view's depth.
+
+@group(0) @binding(0) var<uniform> view: MaskView;
+@group(0) @binding(1) var scene_depth: texture_depth_2d;
+@group(0) @binding(2) var cover_map: texture_depth_2d;
+
+struct Masks {
+    @location(0) wet: vec4<f32>,
+    @location(1) depth: vec4<f32>,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.5, 1.0);
+}
+
+fn from_eye(pixel: vec2<f32>, depth: f32) -> vec3<f32> {
+    let ndc = (pixel / view.screen.yz - 0.5) * vec2<f32>(2.0, -2.0);
+    let p = view.eye_from_clip * vec4<f32>(ndc, depth, 1.0);
+    return p.xyz / p.w;
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
+    var out: Masks;
+    let texel = vec2<i32>(position.xy);
+    let depth = textureLoad(scene_depth, texel, 0);
+    if (depth <= 0.0) {
+        out.wet = vec4<f32>(0.0);
+        out.depth = vec4<f32>(1e9, 0.0, 0.0, 0.0);
+        return out;
+    }
+    let p = from_eye(position.xy, depth);
+    // Face normal from the neighbours on the same surface: the nearer of both sides.
+    let last = vec2<i32>(view.screen.yz) - 1;
+    let left = from_eye(position.xy - vec2<f32>(1.0, 0.0), textureLoad(scene_depth, max(texel - vec2<i32>(1, 0), vec2<i32>(0)), 0));
+    let right = from_eye(position.xy + vec2<f32>(1.0, 0.0), textureLoad(scene_depth, min(texel + vec2<i32>(1, 0), last), 0));
+    let up = from_eye(position.xy - vec2<f32>(0.0, 1.0), textureLoad(scene_depth, max(texel - vec2<i32>(0, 1), vec2<i32>(0)), 0));
+    let down = from_eye(position.xy + vec2<f32>(0.0, 1.0), textureLoad(scene_depth, min(texel + vec2<i32>(0, 1), last), 0));
+    let dx = select(p - left, right - p, length(right - p) < length(p - left));
+    let dy = select(p - up, down - p, length(down - p) < length(p - up));
+    var normal = normalize(cross(dy, dx));
+    normal = select(normal, -normal, dot(normal, p) > 0.0);
+
+    let cover = view.surface.cover;
+    let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
+    let exposure = rain_exposure(cover_map, cover, p + 0.03 * normal, view.surface.state.w)
+        * rain_catch(normal.y, dot(normal, to_rain));
+    out.wet = vec4<f32>(rain_point_wetness(view.surface.state, exposure), 0.0, 0.0, 0.0);
+    out.depth = vec4<f32>(length(p), 0.0, 0.0, 0.0);
+    return out;
+}

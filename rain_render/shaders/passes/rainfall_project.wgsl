@@ -1,0 +1,91 @@
+// One invocation a drop: place, cover, projection, opacity and light.
+
+@group(0) @binding(0) var<uniform> view: RainfallView;
+@group(0) @binding(1) var<storage, read> records: array<DropRecord>;
+@group(0) @binding(2) var<storage, read_write> streaks: array<Streak>;
+@group(0) @binding(3) var cover_map: texture_depth_2d;
+@group(0) @binding(4) var environment: texture_cube<f32>;
+@group(0) @binding(5) var environment_sampler: sampler;
+
+fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
+    // Cube maps are left-handed.
+    let d = vec3<f32>(direction.x, direction.y, -direction.z);
+    let level = blur * view.environment.w;
+    return textureSampleLevel(environment, environment_sampler, d, level).rgb * view.environment.rgb + view.ambient.rgb;
+}
+
+fn drop_radiance(from_eye: vec3<f32>) -> vec3<f32> {
+    let refracted = surroundings(from_eye, 0.55);
+    let reflected = surroundings(vec3<f32>(-from_eye.x, max(0.2, -from_eye.y), -from_eye.z), 0.9);
+    let theta = acos(clamp(dot(from_eye, view.sun_direction.xyz), -1.0, 1.0));
+    let sun = view.sun.rgb * (RAIN_DROP_TRANSMITTED * rain_drop_phase(theta) + RAIN_DROP_REFLECTED * 0.0795775);
+    return RAIN_DROP_TRANSMITTED * refracted + RAIN_DROP_REFLECTED * reflected + sun;
+}
+
+fn to_pixels(clip: vec4<f32>) -> vec2<f32> {
+    return (clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5) * view.viewport;
+}
+
+@compute @workgroup_size(64)
+fn project(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x >= view.drops) {
+        return;
+    }
+    let record = records[id.x];
+    let class_index = record.drop & 15u;
+    let index = (record.drop >> 4u) & 0xFFFu;
+    let presence = f32(record.drop >> 16u) / 65535.0;
+    let k = view.classes[class_index];
+    let relative = vec3<i32>(
+        i32(record.cell & 1023u),
+        i32((record.cell >> 10u) & 1023u),
+        i32((record.cell >> 20u) & 1023u),
+    ) - 512;
+    let key = rain_cell_key(k.stream.xyz, k.cell.xyz + relative);
+    let place = rain_drop_place(key, index);
+    let marks = rain_drop_marks(key, index);
+    let diameter_mm = rain_diameter_mm(k.diameter.x, k.diameter.y, rain_unit(marks.y));
+    let p = (vec3<f32>(relative) - k.fraction.xyz + place) * k.fraction.w;
+
+    var out: Streak;
+    out.ends = vec4<f32>(0.0);
+    out.shape = vec4<f32>(0.0);
+    out.light = vec4<f32>(0.0);
+
+    let reach = min(view.kappa * rain_visible_range(diameter_mm, view.focal, view.exposure), RAIN_RANGE_CAP_M);
+    let weight = presence
+        * rain_ramp(0.1, 0.2, length(p))
+        * (1.0 - rain_ramp(0.8 * reach, RAIN_FADE_END * reach, rain_to_segment(p, view.lead.xyz)));
+    let before = p - k.velocity.xyz * view.exposure;
+    var head = view.clip_from_eye * vec4<f32>(p, 1.0);
+    var tail = view.clip_from_eye_before * vec4<f32>(before, 1.0);
+    let near = max(view.near, 0.02);
+    if (weight <= 0.0 || (head.w < near && tail.w < near)
+        || rain_covered(cover_map, view.cover, p, k.velocity.w)
+        || rain_covered(cover_map, view.cover, before, k.velocity.w)) {
+        streaks[id.x] = out;
+        return;
+    }
+    // Cut at the near plane before dividing.
+    if (head.w < near) {
+        head = mix(head, tail, (near - head.w) / (tail.w - head.w));
+    } else if (tail.w < near) {
+        tail = mix(tail, head, (near - tail.w) / (head.w - tail.w));
+    }
+    let distance = max(0.5 * (head.w + tail.w), near);
+    let size = diameter_mm * 1e-3 * view.focal / distance;
+    let a = to_pixels(head);
+    let b = to_pixels(tail);
+    let width = max(1.0, size);
+    let span = max(1.0, length(b - a) + size);
+    let opacity = min(1.0, 0.7853982 * size * size / (width * span));
+    out.ends = vec4<f32>(a, b);
+    out.shape = vec4<f32>(
+        head.z / head.w,
+        tail.z / tail.w,
+        0.5 * width,
+        weight * rain_contrast(opacity, view.contrast),
+    );
+    out.light = vec4<f32>(drop_radiance(normalize(p)), weight * min(1.0, size / width));
+    streaks[id.x] = out;
+}

@@ -1,0 +1,108 @@
+// Structs that cross from the CPU; one for each struct in gpu_types.rs, compared member by member by a test.
+
+// The depth map along the rain. Positions are relative to the eye, in metres.
+struct CoverParams {
+    // Map centre on the reference plane, relative to the eye (x, z).
+    centre: vec2<f32>,
+    // Horizontal wind (x, z), m/s.
+    wind: vec2<f32>,
+    // 1 / side of the map, 1/m.
+    inverse_extent: f32,
+    // Height of depth 1 above the eye, m.
+    top: f32,
+    // Height between depth 0 and depth 1, m.
+    range: f32,
+    // Height of the highest occluder above the eye, m.
+    highest: f32,
+    // Height of the reference plane above the eye, m.
+    plane: f32,
+    // Flux mean of 1/v, s/m.
+    inverse_speed: f32,
+    // Texels per side.
+    texels: f32,
+    // 1 when there is a map, 0 for open sky.
+    present: f32,
+}
+
+struct RainfallClass {
+    // Lattice cell of the eye; w unused.
+    cell: vec4<i32>,
+    // The eye inside its cell, in cells; w: cell edge, m.
+    fraction: vec4<f32>,
+    // Velocity, m/s; w: 1 / fall speed, s/m.
+    velocity: vec4<f32>,
+    // Random stream of the class; w unused.
+    stream: vec4<u32>,
+    // x: e^(-2 Dmin), y: e^(-2 Dmin) - e^(-2 Dmax), z, w unused.
+    diameter: vec4<f32>,
+}
+
+struct RainfallView {
+    // Eye-relative world to clip, at the end of the exposure.
+    clip_from_eye: mat4x4<f32>,
+    // The same at its start, the eye's motion included.
+    clip_from_eye_before: mat4x4<f32>,
+    // Radiance scale of the environment map; w: its highest mip level.
+    environment: vec4<f32>,
+    // Uniform surrounding radiance.
+    ambient: vec4<f32>,
+    // Direction towards the sun; w unused.
+    sun_direction: vec4<f32>,
+    // Illuminance of the sun, exposed; w unused.
+    sun: vec4<f32>,
+    // How far the container reaches ahead of the eye, m; w unused.
+    lead: vec4<f32>,
+    // Width and height, px.
+    viewport: vec2<f32>,
+    // Focal length, px.
+    focal: f32,
+    // Near plane, m.
+    near: f32,
+    // Shutter time, s.
+    exposure: f32,
+    // Contrast gain, 1 = physical.
+    contrast: f32,
+    // Quality: multiple of the range at which a streak is one 8-bit step.
+    kappa: f32,
+    // Fade against the scene over this distance, m; 0 = hard depth test only.
+    soft: f32,
+    drops: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
+    cover: CoverParams,
+    classes: array<RainfallClass, 12>,
+}
+
+// See `DropRecord` in rain_core.
+struct DropRecord {
+    cell: u32,
+    drop: u32,
+}
+
+// A projected streak.
+struct Streak {
+    // Head and tail, px from the upper left corner.
+    ends: vec4<f32>,
+    // Depth of head and tail, half width px (0: not drawn), opacity.
+    shape: vec4<f32>,
+    // Radiance; w: coverage of a pixel by the swept drop.
+    light: vec4<f32>,
+}
+
+// What the wet look and the wet mask read.
+struct SurfaceParams {
+    // World position of the eye, m.
+    eye: vec4<f32>,
+    // x: wetness 0..1, y: water level mm, z: texture depth mm, w: soft edge of the exposure, m.
+    state: vec4<f32>,
+    cover: CoverParams,
+}
+
+struct MaskView {
+    // Clip to eye-relative world.
+    eye_from_clip: mat4x4<f32>,
+    // x: near plane m, y: width px, z: height px, w: unused.
+    screen: vec4<f32>,
+    surface: SurfaceParams,
+}

@@ -1,0 +1,77 @@
+//! Joins types, library and pass into plain WGSL; there is no preprocessor.
+
+use std::fmt::Write as _;
+
+use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+
+/// Structs that cross from the CPU.
+pub const TYPES: &str = include_str!("../shaders/types.wgsl");
+
+/// A library file: pure functions, no bindings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Library {
+    /// Name without extension.
+    pub name: &'static str,
+    /// WGSL source.
+    pub source: &'static str,
+}
+
+macro_rules! library {
+    ($($name:literal),* $(,)?) => {
+        &[$(Library { name: $name, source: include_str!(concat!("../shaders/lib/", $name, ".wgsl")) }),*]
+    };
+}
+
+/// Every library file, each after those it calls.
+pub const LIBRARIES: &[Library] = library!["hash", "drop_field", "cover", "streak", "drop_light", "wetness"];
+
+/// A pass's own source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pass {
+    /// Name without extension.
+    pub name: &'static str,
+    /// WGSL source: bindings and entry points.
+    pub source: &'static str,
+}
+
+macro_rules! passes {
+    ($($name:literal),* $(,)?) => {
+        &[$(Pass { name: $name, source: include_str!(concat!("../shaders/passes/", $name, ".wgsl")) }),*]
+    };
+}
+
+/// Every pass.
+pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask"];
+
+/// Constants that shaders share with `rain_core`.
+#[must_use]
+pub fn constants() -> String {
+    let mut out = String::new();
+    for (name, value) in [("RAIN_RANGE_CAP_M", RANGE_CAP_M), ("RAIN_FADE_END", FADE_END)] {
+        let _ = writeln!(out, "const {name}: f32 = {value:?};");
+    }
+    out
+}
+
+/// The complete module of a pass.
+///
+/// # Panics
+/// When no pass has this name.
+#[must_use]
+pub fn module(pass: &str) -> String {
+    let pass = PASSES.iter().find(|p| p.name == pass).expect("a pass of this crate");
+    let mut out = constants();
+    out.push_str(TYPES);
+    for library in LIBRARIES {
+        out.push_str(library.source);
+    }
+    out.push_str(pass.source);
+    out
+}
+
+pub(crate) fn shader(device: &wgpu::Device, pass: &str) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(pass),
+        source: wgpu::ShaderSource::Wgsl(module(pass).into()),
+    })
+}

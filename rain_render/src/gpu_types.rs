@@ -1,0 +1,113 @@
+//! Every struct that crosses to the GPU: the twins of `shaders/types.wgsl`, compared member by member by a test.
+//!
+//! Units and meaning of each member stand in the WGSL file.
+
+#![allow(missing_docs, reason = "the members are documented once, in shaders/types.wgsl")]
+
+use bytemuck::{Pod, Zeroable};
+use rain_core::rainfall::CLASS_COUNT;
+
+/// The depth map along the rain.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct CoverParams {
+    pub centre: [f32; 2],
+    pub wind: [f32; 2],
+    pub inverse_extent: f32,
+    pub top: f32,
+    pub range: f32,
+    pub highest: f32,
+    pub plane: f32,
+    pub inverse_speed: f32,
+    pub texels: f32,
+    pub present: f32,
+}
+
+/// One size class of the drop field, placed for a view.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct RainfallClass {
+    pub cell: [i32; 4],
+    pub fraction: [f32; 4],
+    pub velocity: [f32; 4],
+    pub stream: [u32; 4],
+    pub diameter: [f32; 4],
+}
+
+/// A view of the rain.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct RainfallView {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub clip_from_eye_before: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub lead: [f32; 4],
+    pub viewport: [f32; 2],
+    pub focal: f32,
+    pub near: f32,
+    pub exposure: f32,
+    pub contrast: f32,
+    pub kappa: f32,
+    pub soft: f32,
+    pub drops: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+    pub pad_c: u32,
+    pub cover: CoverParams,
+    pub classes: [RainfallClass; CLASS_COUNT],
+}
+
+/// A projected streak; written and read by the GPU only.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct Streak {
+    pub ends: [f32; 4],
+    pub shape: [f32; 4],
+    pub light: [f32; 4],
+}
+
+/// What the wet look and the wet mask read.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SurfaceParams {
+    pub eye: [f32; 4],
+    pub state: [f32; 4],
+    pub cover: CoverParams,
+}
+
+/// The mask pass's view.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct MaskView {
+    pub eye_from_clip: [[f32; 4]; 4],
+    pub screen: [f32; 4],
+    pub surface: SurfaceParams,
+}
+
+/// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
+pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
+
+macro_rules! layout {
+    ($type:ident: $($member:ident),*) => {
+        (stringify!($type), size_of::<$type>(), vec![$((stringify!($member), core::mem::offset_of!($type, $member))),*])
+    };
+}
+
+/// The layouts of every struct of this file.
+#[must_use]
+pub fn layouts() -> Vec<Layout> {
+    use rain_core::rainfall::DropRecord;
+    vec![
+        layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
+        layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
+        layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead,
+            viewport, focal, near, exposure, contrast, kappa, soft, drops, pad_a, pad_b, pad_c, cover, classes),
+        layout!(DropRecord: cell, drop),
+        layout!(Streak: ends, shape, light),
+        layout!(SurfaceParams: eye, state, cover),
+        layout!(MaskView: eye_from_clip, screen, surface),
+    ]
+}

@@ -1,0 +1,11 @@
+//! Rain as wgpu passes, without Bevy and without an ECS.
+//!
+//! A host hands over plain inputs (camera matrices, the drop container of `rain_core`, a depth map along the rain)
+//! and an encoder; this crate uploads, binds and records. Each pass is the same four things: what it is (`mod`),
+//! its inputs (`params`), its GPU objects (`prepare`), its commands (`encode`).
+
+pub mod compose;
+pub mod cover;
+pub mod gpu_types;
+pub mod masks;
+pub mod rainfall;

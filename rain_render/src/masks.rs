@@ -1,0 +1,160 @@
+//! Measurement masks of a view: wetness and distance of every pixel, from the scene's depth.
+//!
+//! Output: two R32Float targets. Only recorded when somebody asked for a mask.
+
+use glam::{Mat4, Vec2};
+
+use crate::compose;
+use crate::gpu_types::{MaskView, SurfaceParams};
+
+/// Format of the wet and distance masks.
+pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+/// Pipeline and uniform of the mask pass.
+#[derive(Debug)]
+pub struct MaskGpu {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+    uniform: wgpu::Buffer,
+}
+
+impl MaskGpu {
+    /// Builds the pipeline.
+    #[must_use]
+    pub fn new(device: &wgpu::Device) -> Self {
+        let depth = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("rain masks"),
+            entries: &[
+                wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::FRAGMENT,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Uniform,
+                        has_dynamic_offset: false,
+                        min_binding_size: wgpu::BufferSize::new(size_of::<MaskView>() as u64),
+                    },
+                    count: None,
+                },
+                depth(1),
+                depth(2),
+            ],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("rain masks"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let module = compose::shader(device, "mask");
+        let target = Some(wgpu::ColorTargetState {
+            format: MASK_FORMAT,
+            blend: None,
+            write_mask: wgpu::ColorWrites::ALL,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("rain masks"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[target.clone(), target],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self {
+            layout,
+            pipeline,
+            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("rain masks"),
+                size: size_of::<MaskView>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+        }
+    }
+
+    /// Uploads a view and binds its depth and the cover map.
+    ///
+    /// `eye_from_clip`: clip to eye-relative world; `near_m`: near plane, m; `size_px`: target size.
+    #[must_use]
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        eye_from_clip: Mat4,
+        near_m: f32,
+        size_px: Vec2,
+        surface: SurfaceParams,
+        scene_depth: &wgpu::TextureView,
+        cover: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        let view = MaskView {
+            eye_from_clip: eye_from_clip.to_cols_array_2d(),
+            screen: [near_m, size_px.x, size_px.y, 0.0],
+            surface,
+        };
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&view));
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain masks"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, self.uniform.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(scene_depth)),
+                entry(2, wgpu::BindingResource::TextureView(cover)),
+            ],
+        })
+    }
+
+    /// Records the pass into the wet and distance targets.
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        bind_group: &wgpu::BindGroup,
+        wet: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+    ) {
+        let attachment = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("rain masks"),
+            color_attachments: &[attachment(wet), attachment(depth)],
+            depth_stencil_attachment: None,
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bind_group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,42 @@
+//! Commands of the pass.
+
+use super::prepare::{COVERAGE_FORMAT, RainfallGpu, RainfallViewGpu};
+
+/// Places, covers and projects this frame's drops.
+pub fn encode_project(pass: &mut wgpu::ComputePass, gpu: &RainfallGpu, view: &RainfallViewGpu) {
+    let Some(bind_group) = &view.project else { return };
+    pass.set_pipeline(&gpu.project);
+    pass.set_bind_group(0, bind_group, &[]);
+    pass.dispatch_workgroups(view.drops.div_ceil(64), 1, 1);
+}
+
+/// Draws the projected streaks over a target of `format` with `samples` samples.
+pub fn encode_draw(
+    pass: &mut wgpu::RenderPass,
+    gpu: &RainfallGpu,
+    view: &RainfallViewGpu,
+    format: wgpu::TextureFormat,
+    samples: u32,
+) {
+    encode(pass, gpu, view, (format, samples, false));
+}
+
+/// Draws the streaks' coverage into a [`COVERAGE_FORMAT`] target.
+pub fn encode_coverage(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, samples: u32) {
+    encode(pass, gpu, view, (COVERAGE_FORMAT, samples, true));
+}
+
+fn encode(
+    pass: &mut wgpu::RenderPass,
+    gpu: &RainfallGpu,
+    view: &RainfallViewGpu,
+    key: (wgpu::TextureFormat, u32, bool),
+) {
+    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(&key)) else {
+        return;
+    };
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, bind_group, &[]);
+    // One big vertex-pulling draw: tiny instances waste most of a SIMD batch.
+    pass.draw(0..6 * view.drops, 0..1);
+}

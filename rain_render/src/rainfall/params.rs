@@ -1,0 +1,107 @@
+//! Plain inputs of the pass and how they become the uniform.
+
+use glam::{Mat4, Vec2, Vec3};
+use rain_core::hash::pcg3d;
+use rain_core::rainfall::{CLASS_COUNT, Container, LEAD_CAP_M, LEAD_TIME_S, SizeClass};
+
+use crate::gpu_types::{CoverParams, RainfallClass, RainfallView};
+
+/// The light that drops show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lighting {
+    /// Scale from the environment map's texels to exposed radiance. 0 when there is no map.
+    pub environment_scale: f32,
+    /// Highest mip level of the environment map.
+    pub environment_max_level: f32,
+    /// Uniform surrounding radiance, exposed.
+    pub ambient: Vec3,
+    /// Direction towards the sun, unit.
+    pub sun_direction: Vec3,
+    /// Illuminance of the sun, exposed.
+    pub sun: Vec3,
+}
+
+/// The shutter and how streaks are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shutter {
+    /// Shutter time. Units: s. Domain: (0, 1].
+    pub exposure_s: f32,
+    /// Gain on streak contrast. Domain: [1, 32]; 1 = physical.
+    pub contrast: f32,
+    /// Quality κ of the container.
+    pub kappa: f32,
+    /// Fade against the scene over this distance, m; 0 = hard depth test.
+    pub soft_m: f32,
+}
+
+/// One view of the rain.
+#[derive(Debug, Clone, Copy)]
+pub struct RainfallInput<'a> {
+    /// The drops and where their lattices stand.
+    pub container: &'a Container,
+    /// Seed of the drop field.
+    pub seed: u64,
+    /// Clip from eye-relative world (rotation and projection, no translation) at the end of the exposure.
+    pub clip_from_eye: Mat4,
+    /// The same at the start of the exposure, from positions relative to the *present* eye.
+    pub clip_from_eye_before: Mat4,
+    /// Velocity of the eye. Units: m/s.
+    pub eye_velocity_m_s: Vec3,
+    /// Size of the target. Units: px.
+    pub viewport_px: Vec2,
+    /// Focal length. Units: px.
+    pub focal_px: f32,
+    /// Near plane of the projection. Units: m.
+    pub near_m: f32,
+    /// Shutter and quality.
+    pub shutter: Shutter,
+    /// Surroundings.
+    pub lighting: Lighting,
+    /// Cover map relative to the eye.
+    pub cover: CoverParams,
+}
+
+impl RainfallInput<'_> {
+    /// The uniform of this view.
+    #[must_use]
+    pub fn uniform(&self) -> RainfallView {
+        let mut classes = [bytemuck::Zeroable::zeroed(); CLASS_COUNT];
+        for (k, (slot, placement)) in classes.iter_mut().zip(&self.container.classes).enumerate() {
+            let class = SizeClass::new(k);
+            let stream = pcg3d([self.seed as u32, (self.seed >> 32) as u32, k as u32]);
+            let v = placement.velocity_m_s;
+            *slot = RainfallClass {
+                cell: placement.eye.cell.extend(0).to_array(),
+                fraction: placement.eye.fraction.extend(class.cell_m as f32).to_array(),
+                velocity: v.extend(1.0 / (-v.y).max(0.1)).to_array(),
+                stream: [stream[0], stream[1], stream[2], 0],
+                diameter: [class.exp_min as f32, class.exp_span as f32, 0.0, 0.0],
+            };
+        }
+        let lead = (self.eye_velocity_m_s * LEAD_TIME_S as f32).clamp_length_max(LEAD_CAP_M as f32);
+        RainfallView {
+            clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
+            clip_from_eye_before: self.clip_from_eye_before.to_cols_array_2d(),
+            environment: Vec3::splat(self.lighting.environment_scale)
+                .extend(self.lighting.environment_max_level)
+                .to_array(),
+            ambient: self.lighting.ambient.extend(0.0).to_array(),
+            sun_direction: self.lighting.sun_direction.extend(0.0).to_array(),
+            sun: self.lighting.sun.extend(0.0).to_array(),
+            lead: lead.extend(0.0).to_array(),
+            viewport: self.viewport_px.to_array(),
+            focal: self.focal_px,
+            near: self.near_m,
+            exposure: self.shutter.exposure_s,
+            contrast: self.shutter.contrast,
+            kappa: self.shutter.kappa,
+            soft: self.shutter.soft_m,
+            drops: self.container.records.len() as u32,
+            pad_a: 0,
+            pad_b: 0,
+            pad_c: 0,
+            cover: self.cover,
+            classes,
+        }
+    }
+}

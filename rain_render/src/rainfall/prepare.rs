@@ -1,0 +1,374 @@
+//! Pipelines that live with the device, buffers that live with a view.
+
+use std::collections::HashMap;
+
+use crate::compose;
+use crate::gpu_types::{RainfallView, Streak};
+use crate::rainfall::RainfallInput;
+
+/// Format of the coverage mask: blendable everywhere.
+pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
+
+/// Format of the depth the rain is tested against.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// What draw pipelines differ by.
+type DrawKey = (wgpu::TextureFormat, u32, bool);
+
+/// Everything of the pass that lives as long as the device.
+#[derive(Debug)]
+pub struct RainfallGpu {
+    pub(super) project_layout: wgpu::BindGroupLayout,
+    pub(super) project: wgpu::ComputePipeline,
+    pub(super) draw_layout: wgpu::BindGroupLayout,
+    draw_pipeline_layout: wgpu::PipelineLayout,
+    draw_shader: wgpu::ShaderModule,
+    pub(super) draw: HashMap<DrawKey, wgpu::RenderPipeline>,
+    no_depth: wgpu::TextureView,
+    no_environment: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+}
+
+/// Textures of the host that a view reads. `None`: open sky, no soft fade, no environment.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct RainfallTextures<'a> {
+    /// Depth map along the rain.
+    pub cover: Option<&'a wgpu::TextureView>,
+    /// Single-sampled depth of the scene, for the soft fade.
+    pub scene_depth: Option<&'a wgpu::TextureView>,
+    /// Prefiltered cube map.
+    pub environment: Option<&'a wgpu::TextureView>,
+}
+
+/// Buffers and bind groups of one view; grown, never shrunk.
+#[derive(Debug)]
+pub struct RainfallViewGpu {
+    uniform: wgpu::Buffer,
+    records: wgpu::Buffer,
+    streaks: wgpu::Buffer,
+    capacity: usize,
+    pub(super) drops: u32,
+    pub(super) project: Option<wgpu::BindGroup>,
+    pub(super) draw: Option<wgpu::BindGroup>,
+}
+
+fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages, size: usize) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        },
+        count: None,
+    }
+}
+
+fn storage_entry(binding: u32, visibility: wgpu::ShaderStages, read_only: bool) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+fn texture_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+fn one_texel(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, layers: u32) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: 1,
+            height: 1,
+            depth_or_array_layers: layers,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(if layers == 6 {
+            wgpu::TextureViewDimension::Cube
+        } else {
+            wgpu::TextureViewDimension::D2
+        }),
+        ..Default::default()
+    })
+}
+
+impl RainfallGpu {
+    /// Builds the layouts and the projection pipeline.
+    #[must_use]
+    pub fn new(device: &wgpu::Device) -> Self {
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let depth = wgpu::TextureSampleType::Depth;
+        let project_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("rain rainfall project"),
+            entries: &[
+                uniform_entry(0, compute, size_of::<RainfallView>()),
+                storage_entry(1, compute, true),
+                storage_entry(2, compute, false),
+                texture_entry(3, compute, depth, wgpu::TextureViewDimension::D2),
+                texture_entry(
+                    4,
+                    compute,
+                    wgpu::TextureSampleType::Float { filterable: true },
+                    wgpu::TextureViewDimension::Cube,
+                ),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 5,
+                    visibility: compute,
+                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                    count: None,
+                },
+            ],
+        });
+        let project_pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("rain rainfall project"),
+            bind_group_layouts: &[Some(&project_layout)],
+            immediate_size: 0,
+        });
+        let project = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("rain rainfall project"),
+            layout: Some(&project_pipeline_layout),
+            module: &compose::shader(device, "rainfall_project"),
+            entry_point: Some("project"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("rain rainfall draw"),
+            entries: &[
+                uniform_entry(0, raster, size_of::<RainfallView>()),
+                storage_entry(1, wgpu::ShaderStages::VERTEX, true),
+                texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
+            ],
+        });
+        let draw_pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("rain rainfall draw"),
+            bind_group_layouts: &[Some(&draw_layout)],
+            immediate_size: 0,
+        });
+        Self {
+            project_layout,
+            project,
+            draw_layout,
+            draw_pipeline_layout,
+            draw_shader: compose::shader(device, "rainfall_draw"),
+            draw: HashMap::new(),
+            no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
+            no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("rain environment"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            }),
+        }
+    }
+
+    /// Makes sure that the draw pipeline for a target exists; `coverage` asks for the mask's as well.
+    pub fn prepare_pipelines(
+        &mut self,
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        samples: u32,
+        coverage: bool,
+    ) {
+        let mut keys = vec![(format, samples, false)];
+        if coverage {
+            keys.push((COVERAGE_FORMAT, samples, true));
+        }
+        for key in keys {
+            if !self.draw.contains_key(&key) {
+                let pipeline = self.draw_pipeline(device, key);
+                self.draw.insert(key, pipeline);
+            }
+        }
+    }
+
+    fn draw_pipeline(&self, device: &wgpu::Device, (format, samples, coverage): DrawKey) -> wgpu::RenderPipeline {
+        let over = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+            operation: wgpu::BlendOperation::Add,
+        };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("rain rainfall draw"),
+            layout: Some(&self.draw_pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &self.draw_shader,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: samples,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &self.draw_shader,
+                entry_point: Some(if coverage { "coverage" } else { "colour" }),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend: Some(wgpu::BlendState {
+                        color: over,
+                        // The target's own alpha stays what the scene made it.
+                        alpha: wgpu::BlendComponent {
+                            src_factor: wgpu::BlendFactor::Zero,
+                            dst_factor: wgpu::BlendFactor::One,
+                            operation: wgpu::BlendOperation::Add,
+                        },
+                    }),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+impl RainfallViewGpu {
+    /// Buffers for a view, empty.
+    #[must_use]
+    pub fn new(device: &wgpu::Device) -> Self {
+        let (records, streaks) = Self::buffers(device, 1024);
+        Self {
+            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("rain rainfall view"),
+                size: size_of::<RainfallView>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            records,
+            streaks,
+            capacity: 1024,
+            drops: 0,
+            project: None,
+            draw: None,
+        }
+    }
+
+    fn buffers(device: &wgpu::Device, capacity: usize) -> (wgpu::Buffer, wgpu::Buffer) {
+        let buffer = |label, bytes: usize, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes as u64,
+                usage: wgpu::BufferUsages::STORAGE | usage,
+                mapped_at_creation: false,
+            })
+        };
+        (
+            buffer("rain drop records", capacity * 8, wgpu::BufferUsages::COPY_DST),
+            buffer(
+                "rain streaks",
+                capacity * size_of::<Streak>(),
+                wgpu::BufferUsages::COPY_SRC,
+            ),
+        )
+    }
+
+    /// Uploads a view's inputs and binds its textures. Call once a frame, before encoding.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        gpu: &RainfallGpu,
+        input: &RainfallInput,
+        textures: RainfallTextures,
+    ) {
+        let records = &input.container.records;
+        self.drops = records.len() as u32;
+        if records.len() > self.capacity {
+            self.capacity = records.len().next_power_of_two();
+            (self.records, self.streaks) = Self::buffers(device, self.capacity);
+        }
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform()));
+        if !records.is_empty() {
+            // A record is two words without padding.
+            let words: Vec<u32> = records.iter().flat_map(|r| [r.cell, r.drop]).collect();
+            queue.write_buffer(&self.records, 0, bytemuck::cast_slice(&words));
+        }
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let view = |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();
+        let cover = view(textures.cover, &gpu.no_depth);
+        let scene = view(textures.scene_depth, &gpu.no_depth);
+        let environment = view(textures.environment, &gpu.no_environment);
+        self.project = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain rainfall project"),
+            layout: &gpu.project_layout,
+            entries: &[
+                entry(0, self.uniform.as_entire_binding()),
+                entry(1, self.records.as_entire_binding()),
+                entry(2, self.streaks.as_entire_binding()),
+                entry(3, wgpu::BindingResource::TextureView(&cover)),
+                entry(4, wgpu::BindingResource::TextureView(&environment)),
+                entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
+            ],
+        }));
+        self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain rainfall draw"),
+            layout: &gpu.draw_layout,
+            entries: &[
+                entry(0, self.uniform.as_entire_binding()),
+                entry(1, self.streaks.as_entire_binding()),
+                entry(2, wgpu::BindingResource::TextureView(&scene)),
+            ],
+        }));
+    }
+
+    /// Number of drops uploaded for this frame.
+    #[must_use]
+    pub fn drops(&self) -> u32 {
+        self.drops
+    }
+
+    /// GPU memory of this view. Units: bytes.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<RainfallView>() + self.capacity * (8 + size_of::<Streak>())
+    }
+
+    /// The projected streaks, for reading back.
+    #[must_use]
+    pub fn streaks(&self) -> &wgpu::Buffer {
+        &self.streaks
+    }
+}

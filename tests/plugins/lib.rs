@@ -1,0 +1,1 @@
+//! Plugin tests; see `tests/`.

@@ -1,0 +1,1 @@
+//! Workspace checks; see `tests/`.
