@@ -94,7 +94,7 @@ struct Streak {
 struct SurfaceParams {
     // World position of the eye, m.
     eye: vec4<f32>,
-    // x: wetness 0..1, y: water level mm, z: texture depth mm, w: soft edge of the exposure, m.
+    // x: wetness 0..1, y: water level mm, z: texture depth mm, w: unused.
     state: vec4<f32>,
     cover: CoverParams,
 }

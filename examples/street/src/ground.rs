@@ -74,11 +74,11 @@ pub fn pavement_height(x: f32, z: f32) -> f32 {
 #[must_use]
 pub fn ground_height(x: f32, z: f32) -> f32 {
     let (a, b) = (x.abs(), z.abs());
-    if (b >= ROAD_HALF_LENGTH && b <= CROSS_FAR_Z) || (a <= ROAD_HALF_WIDTH && b < ROAD_HALF_LENGTH) {
+    if (ROAD_HALF_LENGTH..=CROSS_FAR_Z).contains(&b) || (a <= ROAD_HALF_WIDTH && b < ROAD_HALF_LENGTH) {
         road_height(x, z)
     } else if b > CROSS_FAR_Z {
         far_pavement_height(z)
-    } else if x > FACADE_X && z >= SQUARE_Z[0] && z <= SQUARE_Z[1] {
+    } else if x > FACADE_X && (SQUARE_Z[0]..=SQUARE_Z[1]).contains(&z) {
         square_height(x, z)
     } else {
         pavement_height(x, z)

@@ -1,7 +1,8 @@
 //! A European street in the rain, generated: `street.glb` with its own PBR textures, and `car.glb`.
 //!
 //! Everything comes from formulas and one seed; the same seed gives the same bytes. Where things are does not depend on
-//! the seed and is documented in [`layout`], so that tests can stand in the arcade, measure hollows and look up at eaves.
+//! the seed and is documented in [`mod@layout`], so that tests can stand in the arcade, measure hollows and look up at
+//! eaves.
 //! Metres, Y up, the street along Z, counter-clockwise fronts, physical light units (candela).
 
 pub mod buildings;
@@ -35,10 +36,10 @@ pub const STREET_FILE: &str = "street.glb";
 pub const CAR_FILE: &str = "car.glb";
 /// Seed of the street in pictures and tests.
 pub const DEFAULT_SEED: u64 = 7;
-/// Luminous intensity of a street lamp, candela: about 48 lx on the road below.
-pub const LAMP_CD: f32 = 1250.0;
+/// Luminous intensity of a street lamp, candela: about 70 lx on the road below.
+pub const LAMP_CD: f32 = 1700.0;
 /// Warm white (about 3000 K, seen by a camera balanced for dusk), linear RGB.
-const WARM: [f32; 3] = [1.0, 0.62, 0.29];
+const WARM: [f32; 3] = [1.0, 0.67, 0.35];
 
 /// Writes `street.glb` and `car.glb` into `dir`, which is made when it does not exist.
 ///

@@ -20,6 +20,7 @@ use crate::rainfall::RainView;
 use crate::render_adapter::cover_image;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
+use crate::surface::SurfaceState;
 
 /// Settings of the cover map. Changes take effect with the next redraw; `texels` only before the first rain.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
@@ -216,7 +217,7 @@ fn aim_view(
     settings: Res<CoverSettings>,
     report: Res<RainReport>,
     field: Res<RainfallField>,
-    weather: Query<&WeatherState>,
+    surface: Option<Res<SurfaceState>>,
     views: Query<(&GlobalTransform, &Camera), (With<RainView>, Without<RainCoverView>)>,
     mut cover: Query<(&mut Transform, &mut GlobalTransform, &mut Camera, &mut Projection), With<RainCoverView>>,
 ) {
@@ -226,7 +227,7 @@ fn aim_view(
     };
     camera.is_active = false;
     let view = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation().as_dvec3());
-    let wet = weather.iter().any(|w| !w.is_dry_and_settled());
+    let wet = surface.is_some_and(|s| s.wet);
     let reason = match view {
         _ if !settings.enabled => Some(SkipReason::Disabled),
         None => Some(SkipReason::NoView),

@@ -7,6 +7,7 @@
 //! | `path.rs` | vehicles and cameras as functions of time |
 //! | `headless.rs`, `stage.rs`, `session.rs` | the app, its world, its clock |
 //! | `sky.rs` | the generated sky environment |
+//! | `mips.rs` | mip chains for loaded textures |
 //! | `run.rs` | from file to results |
 //! | `masks.rs`, `contact.rs`, `plot.rs`, `font.rs`, `report.rs`, `output.rs` | the results |
 //! | `expect.rs`, `timeline.rs` | what was expected and what came out |
@@ -21,6 +22,7 @@ pub mod headless;
 mod load;
 mod locate;
 pub mod masks;
+mod mips;
 pub mod output;
 pub mod path;
 pub mod plot;

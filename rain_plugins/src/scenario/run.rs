@@ -99,14 +99,6 @@ pub enum Progress {
     Writing,
 }
 
-/// Surface classes in the record.
-const SHOWN_CLASSES: [SurfaceClass; 4] = [
-    SurfaceClass::Asphalt,
-    SurfaceClass::Stone,
-    SurfaceClass::Soil,
-    SurfaceClass::Roof,
-];
-
 /// Records over the run, at least.
 const RECORDS: f64 = 240.0;
 
@@ -309,7 +301,7 @@ impl Recorder {
                 list.push(series);
             }
         };
-        for class in SHOWN_CLASSES {
+        for class in SurfaceClass::ALL {
             let name = surface_name(class);
             push(&mut t.wetness, &name, weather.wetness(class));
             push(&mut t.water_level_mm, &name, weather.water_level_mm(class));

@@ -84,6 +84,7 @@ impl Session {
         stage::build(&mut app, scenario, assets)?;
         stage::wait_until_loaded(&mut app, |app| headless::step(app, Duration::ZERO))?;
         stage::dress(&mut app, scenario);
+        super::mips::add_mips(&mut app);
         if scenario.rain.enabled {
             stage::weather(&mut app, scenario)?;
         }

@@ -13,7 +13,7 @@ const CLASS: SurfaceClass = SurfaceClass::Asphalt;
 /// Wetness for the shaders, taken from the weather once a frame.
 #[derive(Resource, Clone, Debug)]
 pub struct SurfaceState {
-    /// x: wetness 0…1, y: water level mm, z: texture depth mm, w: bias of the exposure look-up, m.
+    /// x: wetness 0…1, y: water level mm, z: texture depth mm, w: unused.
     pub state: Vec4,
     /// Origin of the eye-relative positions in the buffer. Units: m, world.
     pub anchor: Vec3,
@@ -48,11 +48,14 @@ pub(super) fn follow_weather(
         surface.wet = false;
         return;
     };
-    surface.wet = !weather.is_dry_and_settled();
+    // Soils stay damp for days; what is shown is the class below.
+    surface.wet = weather.conditions().intensity_mm_h > 0.0
+        || weather.wetness(CLASS) > 0.0
+        || weather.water_level_mm(CLASS) > 0.0;
     surface.state = Vec4::new(
         weather.wetness_at(CLASS, clock.interpolation()) as f32,
         weather.water_level_mm_at(CLASS, clock.interpolation()) as f32,
         weather.surfaces().properties(CLASS).texture_depth_mm as f32,
-        0.02,
+        0.0,
     );
 }

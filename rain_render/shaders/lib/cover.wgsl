@@ -41,7 +41,15 @@ fn rain_covered(map: texture_depth_2d, cover: CoverParams, p: vec3<f32>, inverse
     return false;
 }
 
+// How far above a surface of this normal its own texels may lie, m: a filter two texels wide on a slope.
+fn rain_exposure_bias(cover: CoverParams, normal: vec3<f32>) -> f32 {
+    let texel = 1.0 / (cover.inverse_extent * cover.texels);
+    let slope = length(normal.xz) / max(abs(normal.y), 0.15);
+    return 0.03 + min(2.5 * texel * slope, 0.6);
+}
+
 // Share of the rain that reaches `p`, 0..1, along the mean ray: 4 x 4 texels around it, weighted.
+// What lies less than `bias` above `p` does not cover it.
 fn rain_exposure(map: texture_depth_2d, cover: CoverParams, p: vec3<f32>, bias: f32) -> f32 {
     if (cover.present < 0.5) {
         return 1.0;

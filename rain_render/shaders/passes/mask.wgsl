@@ -44,7 +44,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
 
     let cover = view.surface.cover;
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
-    let exposure = rain_exposure(cover_map, cover, p + 0.03 * normal, view.surface.state.w)
+    let exposure = rain_exposure(cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal))
         * rain_catch(normal.y, dot(normal, to_rain));
     out.wet = vec4<f32>(rain_point_wetness(view.surface.state, exposure), 0.0, 0.0, 0.0);
     out.depth = vec4<f32>(length(p), 0.0, 0.0, 0.0);

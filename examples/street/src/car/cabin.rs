@@ -19,7 +19,7 @@ const ROWS: [(f32, f32); 9] = [
 const ROOF: [f32; 5] = [0.18, 0.4, 0.62, 0.84, 1.0];
 
 /// Half sizes and middle (z) of the outline where the cabin meets the body.
-const BASE: (Vec2, f32) = (vec2(0.835, 1.56), -0.42);
+const BASE: (Vec2, f32) = (vec2(0.825, 1.49), -0.4);
 /// Half sizes and middle (z) of the roof's outline.
 const TOP: (Vec2, f32) = (vec2(0.6, 0.8), -0.55);
 
@@ -39,7 +39,8 @@ fn point(base: Vec2, top: Vec2, j: usize) -> Vec3 {
     let (y, t) = ROWS[ROWS.len() - 1];
     let p = place(t);
     let s = ROOF[j - ROWS.len()];
-    let along = 1.0 - ((p.y - TOP.1) / TOP.0.y).powi(2).min(1.0);
+    let share = (p.y - TOP.1) / TOP.0.y;
+    let along = 1.0 - (share * share).min(1.0);
     vec3(
         p.x * (1.0 - s),
         y + (0.012 + 0.033 * along) * (1.0 - (1.0 - s) * (1.0 - s)),

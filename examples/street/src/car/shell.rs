@@ -6,7 +6,8 @@ use glam::{Vec2, Vec3};
 
 /// A point on the outline of a rounded rectangle with half sizes 1: `x^n + z^n = 1` along the direction (x, z).
 fn rounded(x: f32, z: f32, n: i32) -> Vec2 {
-    let norm = rain_core::ops::pow(f64::from(x.abs().powi(n) + z.abs().powi(n)), 1.0 / f64::from(n)) as f32;
+    let power = |a: f32| rain_core::ops::pow(f64::from(a.abs()), f64::from(n));
+    let norm = rain_core::ops::pow(power(x) + power(z), 1.0 / f64::from(n)) as f32;
     Vec2::new(x, z) / norm
 }
 

@@ -137,7 +137,7 @@ pub fn setts(seed: u32) -> Vec<Picture> {
         let tilt = lattice(seed ^ 92, col, row) - 0.5;
         let wob = 0.1 * (fbm(seed ^ 93, u, v, 32, 32, 2) - 0.5);
         let (fx, fy) = (x - x.floor() - 0.5 + wob, v * n as f32 - row as f32 - 0.5 + wob);
-        let r = (fx.abs().powi(4) + fy.abs().powi(4)).sqrt().sqrt();
+        let r = (fx * fx * fx * fx + fy * fy * fy * fy).sqrt().sqrt();
         let top = 1.0 - smoothstep(0.36, 0.47, r);
         let grain = fbm(seed ^ 94, u, v, 96, 96, 2) - 0.5;
         let tint = vec3(1.03, 1.0, 0.95).lerp(vec3(0.93, 0.98, 1.06), lattice(seed ^ 95, col, row));

@@ -159,7 +159,7 @@ pub fn bake(name: &str, size: [u32; 2], metres: [f32; 2], f: impl Fn(f32, f32) -
         let dy = (get(x, y + 1).height - get(x, y + h - 1).height) * scale[1];
         // The image's v grows down, the bitangent points up: the sign of y turns twice.
         let n = vec3(-dx, dy, 1.0).normalize();
-        let byte = |c: f32| coarse(c.mul_add(127.5, 127.5));
+        let byte = |c: f32| coarse(c * 127.5 + 127.5);
         [byte(n.x), byte(n.y), byte(n.z).max(128), 255]
     });
     let orm = Picture::new(&format!("{name}-orm"), w / 2, h / 2, 3, |x, y| {

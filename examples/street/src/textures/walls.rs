@@ -93,10 +93,11 @@ pub fn roof(seed: u32) -> Vec<Picture> {
         let id = lattice(seed ^ 230, col, row);
         // A pan and a roll; the lower end of a tile stands proud of the next course.
         let pan = (fx - 0.36) / 0.36;
+        let roll = (fx - 0.86) / 0.14;
         let wave = if fx < 0.72 {
             0.012 * pan * pan
         } else {
-            0.012 + 0.014 * (1.0 - ((fx - 0.86) / 0.14).powi(2))
+            0.012 + 0.014 * (1.0 - roll * roll)
         };
         let height = wave + 0.016 * fy + 0.003 * (id - 0.5);
         let grain = fbm(seed ^ 231, u, v, 100, 100, 2) - 0.5;

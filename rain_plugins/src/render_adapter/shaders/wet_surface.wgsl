@@ -5,7 +5,7 @@
     pbr_functions::alpha_discard,
 }
 #import rain::surface::{
-    SurfaceParams, rain_exposure, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
+    SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -33,7 +33,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     let cover = rain_surface.cover;
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
     let exposure = material_wetting.x
-        * rain_exposure(rain_cover_map, cover, p + 0.03 * normal, rain_surface.state.w)
+        * rain_exposure(rain_cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal))
         * rain_catch(normal.y, dot(normal, to_rain));
     let wetness = rain_point_wetness(rain_surface.state, exposure);
     // Water runs off what is steep.
