@@ -129,7 +129,7 @@ fn add_lamps(glb: &mut Glb) {
     let mesh = parts.add_to(glb, "lamp");
     let light = glb.add_light(json!({
         "name": "lamp", "type": "spot", "color": WARM, "intensity": LAMP_CD, "range": 28.0,
-        "spot": { "innerConeAngle": 0.85, "outerConeAngle": 1.32 },
+        "spot": { "innerConeAngle": 0.85, "outerConeAngle": 1.5 },
     }));
     for l in LAMPS {
         let [x, z] = l.foot;

@@ -170,6 +170,9 @@ pub struct Environment {
     pub fog_visibility_m: Option<f64>,
     /// Whether bright lights bleed in the camera. Default: true.
     pub bloom: bool,
+    /// Whether wet surfaces mirror the scene itself, drawn from the eye before each capture; else the sky alone.
+    /// Default: true.
+    pub probe: bool,
 }
 
 impl Default for Environment {
@@ -181,6 +184,7 @@ impl Default for Environment {
             lamps: 1.0,
             fog_visibility_m: None,
             bloom: true,
+            probe: true,
         }
     }
 }

@@ -7,6 +7,7 @@
 //! | `path.rs` | vehicles and cameras as functions of time |
 //! | `headless.rs`, `stage.rs`, `session.rs` | the app, its world, its clock |
 //! | `sky.rs` | the generated sky environment |
+//! | `probe.rs` | the scene mirrored in itself |
 //! | `mips.rs` | mip chains for loaded textures |
 //! | `run.rs` | from file to results |
 //! | `masks.rs`, `contact.rs`, `plot.rs`, `font.rs`, `report.rs`, `output.rs` | the results |
@@ -26,6 +27,7 @@ mod mips;
 pub mod output;
 pub mod path;
 pub mod plot;
+mod probe;
 pub mod report;
 pub mod run;
 pub mod session;

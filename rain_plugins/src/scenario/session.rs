@@ -13,7 +13,7 @@ use image::RgbImage;
 use rain_ecs::prelude::*;
 
 use super::file::{Mask, Scenario};
-use super::headless;
+use super::{headless, probe};
 use super::masks::{texel_from_coverage, texel_from_depth};
 use super::run::RunError;
 use super::stage::{self, Stage};
@@ -169,6 +169,12 @@ impl Session {
         }
         self.set_active(true);
         for i in (1..=warm).rev() {
+            if i == 1 {
+                // A new map is in use one frame after it has been made.
+                self.set_active(false);
+                probe::refresh(&mut self.app)?;
+                self.set_active(true);
+            }
             let to = at.saturating_sub(i * FRAME_NS).max(self.now_ns);
             self.update_to(to)?;
         }

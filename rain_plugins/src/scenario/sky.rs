@@ -203,9 +203,19 @@ impl SkyModel {
 #[must_use]
 pub fn generate(model: &SkyModel, handedness: Handedness) -> SkyMaps {
     let sky = Cube::from_fn(SKY_PX, handedness, |d| model.radiance(d, false));
-    let source = Cube::from_fn(SPECULAR_PX, handedness, |d| model.radiance(d, true)).with_smaller();
+    let source = Cube::from_fn(SPECULAR_PX, handedness, |d| model.radiance(d, true));
+    let specular = prefilter(source.clone());
+    // 32 pixels: level 2 of the source.
+    let diffuse = irradiance(&source.with_smaller()[2]);
+    SkyMaps { sky, specular, diffuse }
+}
+
+/// The GGX-filtered levels of a cube map of [`SPECULAR_PX`] faces, see [`SkyMaps::specular`].
+#[must_use]
+pub fn prefilter(source: Cube) -> Vec<Cube> {
+    let source = source.with_smaller();
     let levels = (SPECULAR_PX / SPECULAR_LAST_PX).ilog2();
-    let specular = (0..=levels)
+    (0..=levels)
         .map(|level| {
             if level == 0 {
                 source[0].clone()
@@ -213,10 +223,7 @@ pub fn generate(model: &SkyModel, handedness: Handedness) -> SkyMaps {
                 filtered(&source, level, levels)
             }
         })
-        .collect();
-    // 32 pixels: level 2 of the source.
-    let diffuse = irradiance(&source[2]);
-    SkyMaps { sky, specular, diffuse }
+        .collect()
 }
 
 /// Illuminance on level ground divided by π and the zenith's luminance, from the closed form without clouds and houses:
@@ -228,7 +235,9 @@ pub fn ground_light(settings: &OvercastSky) -> f64 {
 }
 
 impl Cube {
-    fn from_fn(size: u32, handedness: Handedness, f: impl Fn(Rgb) -> Rgb) -> Self {
+    /// A level from a function of the world direction (unit length).
+    #[must_use]
+    pub fn from_fn(size: u32, handedness: Handedness, f: impl Fn(Rgb) -> Rgb) -> Self {
         let mut texels = Vec::with_capacity((6 * size * size) as usize);
         for face in 0..6 {
             for y in 0..size {
@@ -296,7 +305,7 @@ impl Cube {
     }
 
     /// This level and all smaller ones down to 1 pixel, each the mean of four texels.
-    fn with_smaller(self) -> Vec<Self> {
+    pub(super) fn with_smaller(self) -> Vec<Self> {
         let handedness = self.handedness;
         let mut levels = vec![self];
         while let Some(large) = levels.last().filter(|l| l.size > 1) {
@@ -389,7 +398,7 @@ fn filtered(source: &[Cube], level: u32, levels: u32) -> Cube {
 }
 
 /// Irradiance over π, towards [`DIFFUSE_PX`] faces.
-fn irradiance(source: &Cube) -> Cube {
+pub(super) fn irradiance(source: &Cube) -> Cube {
     let size = source.size;
     let weighted: Vec<(Rgb, f32, Rgb)> = (0..6 * size * size)
         .map(|i| {

@@ -92,8 +92,11 @@ pub(super) fn build(app: &mut App, scenario: &Scenario, folder: &Path) -> Result
         waiting.push(root);
     }
     light(app, scenario);
-    let stage = camera(app, scenario, waiting);
+    let (stage, sky_diffuse) = camera(app, scenario, waiting);
     app.insert_resource(stage);
+    if scenario.environment.probe {
+        super::probe::spawn(app, sky_diffuse);
+    }
     app.insert_resource(CameraWay(CameraPath::new(scenario)));
     Ok(())
 }
@@ -182,7 +185,7 @@ fn light(app: &mut App, scenario: &Scenario) {
 }
 
 /// A cube map as an image; `levels` from large to small.
-fn cube_image(levels: &[Cube]) -> Image {
+pub(super) fn cube_image(levels: &[Cube]) -> Image {
     let size = levels[0].size;
     let face_bytes = |cube: &Cube, face: usize| {
         let bytes = cube.rgba16_bytes();
@@ -211,7 +214,7 @@ fn cube_image(levels: &[Cube]) -> Image {
     image
 }
 
-fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> Stage {
+fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, Cube) {
     let [width, height] = scenario.outputs.size;
     let environment = &scenario.environment;
     let Sky::Overcast(sky) = &environment.sky;
@@ -289,12 +292,13 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> Stage {
             camera.insert(masks.clone());
         }
     }
-    Stage {
+    let stage = Stage {
         camera: camera.id(),
         target,
         masks: masks.filter(|_| scenario.rain.enabled),
         waiting,
-    }
+    };
+    (stage, maps.diffuse)
 }
 
 /// Steps until every glTF stands in the world with all its textures.

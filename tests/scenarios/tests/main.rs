@@ -1,1 +1,11 @@
-//! Tests.
+//! What rendered frames and masks must show. Names state the claim; a "zero" has a partner above zero in its own test.
+
+mod bad_input;
+mod border;
+mod determinism;
+mod goldens;
+mod intensity;
+mod moving;
+mod real_models;
+mod shelter;
+mod street_places;

@@ -1,0 +1,55 @@
+//! A lost graphics device is rebuilt and rain goes on.
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+use bevy::render::error_handler::{RenderErrorHandler, RenderErrorPolicy};
+use bevy::render::renderer::RenderDevice;
+use rain_plugins::prelude::*;
+use test_support::app::{FRAME, TestApp};
+use test_support::{gpu, world};
+
+#[test]
+fn passes_are_recorded_again_after_the_device_was_lost() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = TestApp::new([96, 54], true);
+    world::ground(test.world());
+    world::roof(test.world());
+    test.world().spawn(Weather::rain(50.0));
+    test.look(Vec3::new(0.0, 1.7, 12.0), Vec3::new(0.0, 1.5, 0.0));
+    test.app
+        .insert_resource(RenderErrorHandler(|_, _, _| RenderErrorPolicy::Recover(default())));
+    test.frames(20, FRAME);
+    assert!(test.recorded(PassName::Rainfall) > 10 && test.recorded(PassName::Cover) > 0);
+    let before = test.picture();
+
+    test.reset();
+    let lost = test.app.world().resource::<RenderDevice>().clone();
+    lost.wgpu_device().destroy();
+    // The callback that reports the loss fires from a poll.
+    let _ = lost.wgpu_device().poll(wgpu::PollType::Poll);
+    let mut rebuilt = false;
+    for _ in 0..400 {
+        test.app.update();
+        std::thread::sleep(Duration::from_millis(5));
+        let device = test.app.world().resource::<RenderDevice>();
+        rebuilt = device.wgpu_device() != lost.wgpu_device();
+        if rebuilt {
+            break;
+        }
+    }
+    assert!(rebuilt, "no new device");
+    test.frames(10, FRAME);
+    assert!(test.recorded(PassName::Rainfall) >= 10, "{}", test.recorded(PassName::Rainfall));
+    // The kept cover map went with the device: without a new one rain would fall through the roof.
+    assert!(test.recorded(PassName::Cover) > 0, "the cover map was not drawn again");
+    // What is drawn is a picture again, with the scene in it; the camera has not moved.
+    let after = test.picture();
+    let differing = before.pixels().zip(after.pixels()).filter(|(a, b)| {
+        a.0.iter().zip(b.0).any(|(x, y)| x.abs_diff(y) > 40)
+    });
+    let (differing, all) = (differing.count(), before.pixels().len());
+    assert!(differing * 5 < all, "{differing} of {all} pixels are others than before the loss");
+}

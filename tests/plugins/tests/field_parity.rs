@@ -1,0 +1,226 @@
+//! The drops that the GPU projects are the CPU's: places, diameters, speeds, and which of them are drawn.
+
+use glam::{Mat4, Vec2, Vec3, Vec4};
+use rain_core::rainfall::{
+    CLASS_COUNT, Container, Distribution, DrawRange, FADE_END, FieldMotion, RainViewVolume, SizeClass, Spectrum,
+    terminal_velocity, visible_range_m,
+};
+use rain_render::cover::open_sky;
+use rain_render::gpu_types::Streak;
+use rain_render::rainfall::{
+    Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, Shutter, encode_project,
+};
+
+use crate::device::{Device, device, kernel, library};
+
+/// A view of the drop field without Bevy.
+pub struct FieldView {
+    pub size: Vec2,
+    pub fov_y: f32,
+    pub eye_m: glam::DVec3,
+    pub eye_velocity_m_s: glam::DVec3,
+    pub exposure_s: f32,
+    pub kappa: f64,
+    pub seconds: f64,
+    pub wind_m_s: glam::DVec3,
+}
+
+impl Default for FieldView {
+    fn default() -> Self {
+        Self {
+            size: Vec2::new(1280.0, 720.0),
+            fov_y: 1.0,
+            eye_m: glam::DVec3::new(100_003.7, 1.7, -43_210.4),
+            eye_velocity_m_s: glam::DVec3::ZERO,
+            exposure_s: 1.0 / 60.0,
+            kappa: 1.0,
+            seconds: 1234.5,
+            wind_m_s: glam::DVec3::new(3.0, 0.0, -1.0),
+        }
+    }
+}
+
+impl FieldView {
+    pub fn focal_px(&self) -> f32 {
+        0.5 * self.size.y / (0.5 * self.fov_y).tan()
+    }
+
+    /// Infinite reverse-Z, looking along −Z, near plane at 5 cm.
+    fn clip_from_eye(&self) -> Mat4 {
+        let f = 1.0 / (0.5 * self.fov_y).tan();
+        Mat4::from_cols(
+            Vec4::new(f * self.size.y / self.size.x, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, f, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, 0.0, -1.0),
+            Vec4::new(0.0, 0.0, 0.05, 0.0),
+        )
+    }
+
+    /// The drops that this view draws at a spectrum.
+    pub fn container(&self, seed: u64, spectrum: &Spectrum) -> Container {
+        let ty = (0.5 * self.fov_y).tan();
+        let tx = ty * self.size.x / self.size.y;
+        let plane = |n: Vec3| n.normalize().extend(0.0);
+        let volume = RainViewVolume {
+            eye_m: self.eye_m,
+            eye_velocity_m_s: self.eye_velocity_m_s,
+            side_planes: [
+                plane(Vec3::new(1.0, 0.0, -tx)),
+                plane(Vec3::new(-1.0, 0.0, -tx)),
+                plane(Vec3::new(0.0, 1.0, -ty)),
+                plane(Vec3::new(0.0, -1.0, -ty)),
+            ],
+            focal_px: f64::from(self.focal_px()),
+            solid_angle_sr: 1.0,
+            exposure_s: f64::from(self.exposure_s),
+        };
+        let mut motion = FieldMotion::default();
+        motion.set_velocity(self.wind_m_s, 1.2041);
+        motion.advance(self.seconds);
+        let mut container = Container::default();
+        assert!(container.fill(seed, spectrum, &motion, &volume, self.kappa, 1 << 21));
+        container
+    }
+
+    /// The streaks that the GPU makes of them, at contrast 1 under an open sky.
+    pub fn streaks(&self, gpu: &Device, pipelines: &RainfallGpu, seed: u64, container: &Container) -> Vec<Streak> {
+        let now = self.clip_from_eye();
+        let shift = self.eye_velocity_m_s.as_vec3() * self.exposure_s;
+        let input = RainfallInput {
+            container,
+            seed,
+            clip_from_eye: now,
+            clip_from_eye_before: now * Mat4::from_translation(shift),
+            eye_velocity_m_s: self.eye_velocity_m_s.as_vec3(),
+            viewport_px: self.size,
+            focal_px: self.focal_px(),
+            near_m: 0.05,
+            shutter: Shutter {
+                exposure_s: self.exposure_s,
+                contrast: 1.0,
+                kappa: self.kappa as f32,
+                soft_m: 0.0,
+            },
+            lighting: Lighting {
+                environment_scale: 0.0,
+                environment_max_level: 0.0,
+                ambient: Vec3::ONE,
+                sun_direction: Vec3::Y,
+                sun: Vec3::ZERO,
+            },
+            cover: open_sky(),
+        };
+        let mut view = RainfallViewGpu::new(&gpu.device);
+        view.prepare(&gpu.device, &gpu.queue, pipelines, &input, RainfallTextures::default());
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            encode_project(&mut pass, pipelines, &view);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let bytes = gpu.read(view.streaks(), (container.records.len() * size_of::<Streak>()) as u64);
+        bytemuck::pod_collect_to_vec(&bytes)
+    }
+
+    /// Where a place relative to the eye is in the picture; the depth along the view axis as z. Units: px, m.
+    pub fn project(&self, p: Vec3) -> Vec3 {
+        let clip = self.clip_from_eye() * p.extend(1.0);
+        let ndc = clip.truncate().truncate() / clip.w;
+        ((ndc * Vec2::new(0.5, -0.5) + 0.5) * self.size).extend(clip.w)
+    }
+}
+
+#[test]
+fn projected_drops_are_where_the_cpu_puts_them_and_another_seed_is_found() {
+    let Some(gpu) = device() else { return };
+    let pipelines = RainfallGpu::new(&gpu.device);
+    let spectrum = Spectrum::new(Distribution::MarshallPalmer, 25.0).expect("a spectrum");
+    let view = FieldView::default();
+    let seed = 0xFEDC_BA98_7654_3210;
+    let container = view.container(seed, &spectrum);
+    let streaks = view.streaks(&gpu, &pipelines, seed, &container);
+    let range = DrawRange {
+        kappa: view.kappa,
+        focal_px: f64::from(view.focal_px()),
+        exposure_s: f64::from(view.exposure_s),
+    };
+    let (mut compared, mut classes, mut worst) = (0, [0_u32; CLASS_COUNT], 0.0_f32);
+    let mut misplaced_by_another_seed = 0;
+    for (record, streak) in container.records.iter().zip(&streaks) {
+        let p = record.position(seed, &container.classes);
+        let class = (record.drop & 15) as usize;
+        let before = p - container.classes[class].velocity_m_s * view.exposure_s;
+        let (head, tail) = (view.project(p), view.project(before));
+        let reach = FADE_END * range.at(SizeClass::new(class).min_mm);
+        if head.z < 0.06 || tail.z < 0.06 || f64::from(p.length()) > reach || p.length() < 0.2 {
+            // Cut at the near plane, faded away, or right at one of the two limits.
+            continue;
+        }
+        assert!(streak.shape[2] > 0.0, "a drop at {p} is not drawn");
+        let off = (Vec2::new(streak.ends[0], streak.ends[1]) - head.truncate())
+            .length()
+            .max((Vec2::new(streak.ends[2], streak.ends[3]) - tail.truncate()).length());
+        worst = worst.max(off / head.truncate().length().max(1000.0) * 1000.0);
+        let other = view.project(record.position(seed + 1, &container.classes));
+        if (Vec2::new(streak.ends[0], streak.ends[1]) - other.truncate()).length() > 1.0 {
+            misplaced_by_another_seed += 1;
+        }
+        compared += 1;
+        classes[class] += 1;
+    }
+    assert!(compared > 5_000 && classes.iter().all(|n| *n > 0), "{compared} drops, {classes:?}");
+    // 1e-6 m at 0.2 m is 3e-3 px.
+    assert!(worst < 0.02, "{worst} px");
+    assert!(misplaced_by_another_seed * 100 > compared * 99, "{misplaced_by_another_seed} of {compared}");
+}
+
+#[test]
+fn every_drop_beyond_its_range_is_hidden_and_every_one_inside_is_drawn() {
+    let Some(gpu) = device() else { return };
+    let pipelines = RainfallGpu::new(&gpu.device);
+    let spectrum = Spectrum::new(Distribution::MarshallPalmer, 25.0).expect("a spectrum");
+    let view = FieldView::default();
+    let container = view.container(3, &spectrum);
+    // The same records, drawn for half the quality: those between the two ranges must vanish.
+    let strict = FieldView { kappa: 0.5, ..FieldView::default() };
+    let streaks = strict.streaks(&gpu, &pipelines, 3, &container);
+    let kept = strict.container(3, &spectrum).records.len();
+    let drawn = streaks.iter().filter(|s| s.shape[2] > 0.0).count();
+    assert!(container.records.len() > 3 * kept, "{} and {kept}", container.records.len());
+    // The container keeps a margin of one streak at the sides and draws none closer than 0.1 m.
+    assert!(drawn <= kept && drawn * 100 > kept * 97, "{drawn} drawn, {kept} within the range");
+}
+
+#[test]
+fn diameters_speeds_and_visible_ranges_agree_on_gpu_and_cpu() {
+    let Some(gpu) = device() else { return };
+    let (focal, exposure) = (623.5_f32, 1.0_f32 / 60.0);
+    let mut input: Vec<[f32; 4]> = Vec::new();
+    for class in SizeClass::all() {
+        for i in 0..200_u32 {
+            input.push([class.exp_min as f32, class.exp_span as f32, i as f32 / 200.0, 0.0]);
+        }
+    }
+    let body = format!(
+        "let d = rain_diameter_mm(input[i].x, input[i].y, input[i].z);
+    output[i] = vec4<f32>(d, rain_terminal_velocity(d), rain_visible_range(d, {focal:?}, {exposure:?}), 0.0);"
+    );
+    let found = gpu.compute::<_, [f32; 4]>(&kernel(&library(), "vec4<f32>", "vec4<f32>", &body), &input, &[]);
+    let mut worst = [0.0_f64; 3];
+    for (i, f) in found.iter().enumerate() {
+        let class = SizeClass::new(i / 200);
+        let d = f64::from(class.diameter_mm(input[i][2]));
+        assert!(d >= class.min_mm * 0.999_99 && d <= class.max_mm * 1.000_01);
+        let expected = [
+            d,
+            terminal_velocity(d),
+            visible_range_m(d, f64::from(focal), f64::from(exposure)),
+        ];
+        for k in 0..3 {
+            worst[k] = worst[k].max((f64::from(f[k]) / expected[k] - 1.0).abs());
+        }
+    }
+    // Vulkan lets `log` err by 3 units in the last place; e^(−2D) magnifies by at most 1/(2D), D ≥ 0.5 mm. The top class
+    // subtracts two nearly equal numbers.
+    assert!(worst[0] < 1e-4 && worst[1] < 1e-4 && worst[2] < 3e-4, "{worst:?}");
+}
