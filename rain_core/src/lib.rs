@@ -4,6 +4,8 @@
 //! SI units unless a name carries another one (`intensity_mm_h`, `diameter_mm`).
 //! Transcendental functions go through [`ops`], so the same input gives the same bits on every platform.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with std"))]
+
 pub mod constants;
 pub mod cover;
 pub mod error;

@@ -1,6 +1,6 @@
 //! What was recorded, what was skipped, and why.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use bevy::prelude::*;
@@ -17,7 +17,7 @@ pub enum PassName {
 }
 
 impl PassName {
-    /// The name in reports and timing spans.
+    /// The name in reports.
     #[must_use]
     pub fn as_str(self) -> &'static str {
         match self {
@@ -72,6 +72,9 @@ pub struct PassRecord {
     pub skipped: BTreeMap<SkipReason, u64>,
 }
 
+/// Frames whose drop counts are kept.
+pub const KEPT_FRAMES: usize = 16_384;
+
 /// What the rain passes did: shared by the main and the render world.
 ///
 /// `recorded` is counted where the commands are recorded, so a test that reads it counts passes, not flags.
@@ -83,8 +86,8 @@ pub struct RainReport(Arc<Mutex<Report>>);
 pub struct Report {
     /// One entry for each pass that has been considered.
     pub passes: BTreeMap<PassName, PassRecord>,
-    /// Drops handed to the GPU, for each frame that drew rain.
-    pub drops: Vec<u32>,
+    /// Drops handed to the GPU in the latest frames that drew rain, at most [`KEPT_FRAMES`] of them.
+    pub drops: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
     pub gpu_memory_bytes: usize,
 }
@@ -106,7 +109,11 @@ impl RainReport {
 
     /// Notes how many drops a frame drew.
     pub fn drops(&self, count: u32) {
-        self.lock().drops.push(count);
+        let mut report = self.lock();
+        if report.drops.len() == KEPT_FRAMES {
+            report.drops.pop_front();
+        }
+        report.drops.push_back(count);
     }
 
     /// Notes the GPU memory in use.

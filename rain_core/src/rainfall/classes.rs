@@ -73,7 +73,7 @@ impl SizeClass {
             cell_m,
             exp_min,
             exp_span,
-            reference_count: cell_m.powi(3) * REFERENCE_N0_PER_M3_MM / REFERENCE_SLOPE_PER_MM * exp_span,
+            reference_count: cell_m * cell_m * cell_m * REFERENCE_N0_PER_M3_MM / REFERENCE_SLOPE_PER_MM * exp_span,
         }
     }
 

@@ -45,7 +45,7 @@ pub struct RainViewVolume {
 
 /// One drop to draw: 8 bytes. The GPU makes the rest again from the same hashes.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropRecord {
     /// Cell relative to the eye's cell, 10 bits each for x, y, z, biased by 512.
     pub cell: u32,
@@ -87,7 +87,7 @@ pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) ->
             let middle = 0.5 * (class.min_mm + class.max_mm);
             let (a, b) = if half == 0 { (class.min_mm, middle) } else { (middle, class.max_mm) };
             let reach = FADE_END * range.at(0.5 * (a + b));
-            sum += spectrum.moment(0, a, b) * view.solid_angle_sr / 3.0 * reach.powi(3);
+            sum += spectrum.moment(0, a, b) * view.solid_angle_sr / 3.0 * reach * reach * reach;
         }
     }
     sum

@@ -13,11 +13,11 @@ use rain_ecs::prelude::*;
 use crate::rainfall::RainView;
 use crate::surface::OriginalMaterial;
 
-/// Whether the first active [`RainView`] stands in closed-in air.
+/// Whether the first active [`RainView`] stands in closed-in air; other views are not judged and draw.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AirAroundView {
-    /// No rain can be in sight.
-    pub closed_in: bool,
+    /// The view from which no rain can be in sight.
+    pub closed_in: Option<Entity>,
 }
 
 /// The scene's surfaces on the CPU: those whose material is opaque and whose mesh keeps its data.
@@ -52,17 +52,18 @@ pub(super) fn judge_air(
     field: Res<RainfallField>,
     meshes: Res<Assets<Mesh>>,
     materials: Res<Assets<StandardMaterial>>,
-    views: Query<(&GlobalTransform, &Camera), With<RainView>>,
+    views: Query<(Entity, &GlobalTransform, &Camera), With<RainView>>,
     surfaces: Query<Surface>,
 ) {
-    judged.closed_in = false;
+    judged.closed_in = None;
     if !field.is_raining() {
         surroundings.stale = true;
         return;
     }
-    let Some(eye) = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation().as_dvec3()) else {
+    let Some((view, at, _)) = views.iter().find(|(_, _, c)| c.is_active) else {
         return;
     };
+    let eye = at.translation().as_dvec3();
     let s = &mut *surroundings;
     take_in(s, &field, &meshes, &materials, &surfaces);
     let Some(cover) = &s.cover else { return };
@@ -72,7 +73,7 @@ pub(super) fn judge_air(
         && same_place
         && flooded.contains(&cell.to_array())
     {
-        judged.closed_in = true;
+        judged.closed_in = Some(view);
         return;
     }
     let inverse_speed = field.mean_inverse_velocity_s_m();
@@ -84,7 +85,7 @@ pub(super) fn judge_air(
         Air::ClosedIn(cells) => Some(cells),
         Air::Open => None,
     };
-    judged.closed_in = s.flooded.is_some();
+    judged.closed_in = s.flooded.is_some().then_some(view);
 }
 
 /// Brings the CPU surfaces up to date with what was added, moved or removed.

@@ -2,13 +2,11 @@
 
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::primitives::Aabb;
-use bevy::camera::visibility::RenderLayers;
-use bevy::camera::{RenderTarget, visibility::InheritedVisibility};
-use bevy::core_pipeline::prepass::DepthPrepass;
-use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::camera::visibility::{InheritedVisibility, RenderLayers};
 use bevy::light::cluster::Clusters;
-use bevy::math::{DVec2, DVec3};
+use bevy::math::DVec2;
 use bevy::prelude::*;
+use rain_core::cover::{FallSlope, ShearedOrthographic, ShearedOrthographicSettings};
 use rain_ecs::prelude::*;
 use rain_render::cover::CoverPlacement;
 use std::sync::Arc;
@@ -17,12 +15,12 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use super::air::{AirAroundView, Surroundings, judge_air};
 use super::projection::ShearedProjection;
 use crate::rainfall::RainView;
-use crate::render_adapter::cover_image;
+use crate::render_adapter::{RenderApp, cover_camera, cover_image};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
 use crate::surface::SurfaceState;
 
-/// Settings of the cover map. Changes take effect with the next redraw; `texels` only before the first rain.
+/// Settings of the cover map. Changes take effect with the next redraw, `texels` only before the app's first update.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Resource, Default)]
 pub struct CoverSettings {
@@ -55,12 +53,16 @@ pub struct RainCoverView;
 /// The kept map: where it lies and the texture that holds it.
 #[derive(Resource, Clone, Debug)]
 pub struct CoverMap {
+    /// Texels per side: those of the settings when the app started.
+    pub texels: u32,
     /// Depth texture (Depth32Float), valid once `placement` is set.
     pub image: Handle<Image>,
     /// Where the kept map lies; `None` until it has been drawn once.
     pub placement: Option<CoverPlacement>,
     /// True in frames that draw it.
     pub redraw: bool,
+    /// The projection it was drawn with, and the fall it was drawn along.
+    drawn: Option<(ShearedOrthographic, FallSlope)>,
     /// Set by the render world when a drawn map held every mesh that was ready to be drawn.
     pub(crate) complete: Arc<AtomicBool>,
 }
@@ -76,6 +78,9 @@ pub struct CoverPlugin;
 
 impl Plugin for CoverPlugin {
     fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            return; // a server draws no map
+        }
         app.init_resource::<CoverSettings>()
             .register_type::<CoverSettings>()
             .register_type::<RainCoverView>()
@@ -93,12 +98,15 @@ impl Plugin for CoverPlugin {
 }
 
 fn create_map(mut commands: Commands, mut images: ResMut<Assets<Image>>, settings: Res<CoverSettings>) {
-    let mut image = cover_image(settings.texels.clamp(64, 4096));
+    let texels = settings.texels.clamp(64, 4096);
+    let mut image = cover_image(texels);
     image.asset_usage = RenderAssetUsages::RENDER_WORLD;
     commands.insert_resource(CoverMap {
+        texels,
         image: images.add(image),
         placement: None,
         redraw: false,
+        drawn: None,
         complete: Arc::default(),
     });
 }
@@ -108,6 +116,7 @@ fn create_map(mut commands: Commands, mut images: ResMut<Assets<Image>>, setting
 fn spawn_view(
     mut commands: Commands,
     settings: Res<CoverSettings>,
+    map: Res<CoverMap>,
     views: Query<Option<&RenderLayers>, With<RainView>>,
     cover: Query<(), With<RainCoverView>>,
 ) {
@@ -115,27 +124,13 @@ fn spawn_view(
     if !cover.is_empty() || !settings.enabled {
         return;
     }
+    let Ok(projection) = ShearedOrthographic::new(ShearedOrthographicSettings::default()) else {
+        return;
+    };
     let mut entity = commands.spawn((
-        Name::new("rain cover view"),
         RainCoverView,
-        Camera3d::default(),
-        Camera {
-            order: -100,
-            is_active: false,
-            ..default()
-        },
-        RenderTarget::None {
-            size: UVec2::splat(settings.texels.clamp(64, 4096)),
-        },
-        Projection::custom(ShearedProjection {
-            half_extent: 1.0,
-            range: 1.0,
-            reference: 0.0,
-            drift: Vec2::ZERO,
-        }),
-        Tonemapping::None,
-        DepthPrepass,
-        Msaa::Off,
+        cover_camera(map.texels),
+        Projection::custom(ShearedProjection(projection)),
     ));
     // Without clusters the view is not lit, so no shadow cascades are rendered for it.
     entity.remove::<Clusters>();
@@ -240,10 +235,22 @@ fn aim_view(
     }
     let eye = view.unwrap_or_default();
     let wind = field.wind_m_s();
-    let wind = DVec2::new(wind.x, wind.z);
-    let inverse_speed = field.mean_inverse_velocity_s_m();
+    let Ok(slope) = FallSlope::new(DVec2::new(wind.x, wind.z), field.mean_inverse_velocity_s_m()) else {
+        report.skipped(PassName::Cover, SkipReason::Disabled);
+        return;
+    };
     let extent = f64::from(settings.extent_m.clamp(10.0, 400.0));
-    let texel = extent / f64::from(settings.texels);
+    let margin = f64::from(settings.margin_m.clamp(0.0, 0.45 * settings.extent_m));
+    let kept = map.drawn.as_ref().is_some_and(|(drawn, along)| {
+        drawn.holds(eye, 0.5 * extent - margin)
+            && along.angle_to(&slope) <= DIRECTION_TOLERANCE
+            && (drawn.settings().extent_m - extent).abs() < 1e-9
+            && (drawn.settings().low_m..drawn.settings().high_m).contains(&eye.y)
+    });
+    if kept && !watch.changed && map.complete.load(Relaxed) {
+        report.skipped(PassName::Cover, SkipReason::NothingMoved);
+        return;
+    }
     let (top, bottom) = if watch.count == 0 {
         (eye.y as f32 + 1.0, eye.y as f32 - 1.0)
     } else {
@@ -252,48 +259,38 @@ fn aim_view(
             (watch.bottom - 0.5).max(eye.y as f32 - VERTICAL_REACH_M),
         )
     };
-    let top = f64::from(top.max(bottom + 1.0));
-    let bottom = f64::from(bottom);
-    // The reference plane is the eye's height in whole metres: the map is centred on rays that pass the eye.
-    let plane = eye.y.round();
-    let kept = map.placement.filter(|p| {
-        let direction = |wind: DVec2, t: f64| DVec3::new(wind.x * t, -1.0, wind.y * t).normalize();
-        let turned = direction(p.wind_m_s, p.inverse_speed_s_m).angle_between(direction(wind, inverse_speed));
-        (DVec2::new(eye.x, eye.z) - p.centre_m).abs().max_element() <= f64::from(settings.margin_m)
-            && (eye.y - p.plane_m).abs() <= f64::from(settings.margin_m)
-            && turned <= DIRECTION_TOLERANCE
-            && (p.extent_m - extent).abs() < 1e-9
+    let high_m = f64::from(top.max(bottom + 1.0));
+    let drawn = ShearedOrthographic::new(ShearedOrthographicSettings {
+        centre: eye,
+        extent_m: extent,
+        texels: map.texels,
+        low_m: f64::from(bottom),
+        high_m,
+        // Texels are anchored in this plane: it must not follow the eye step by step.
+        reference_height_m: (eye.y / 1000.0).round() * 1000.0,
+        drift: slope.drift(),
     });
-    let complete = map.complete.load(Relaxed);
-    if kept.is_some() && !watch.changed && complete {
-        report.skipped(PassName::Cover, SkipReason::NothingMoved);
+    let Ok(drawn) = drawn else {
+        report.skipped(PassName::Cover, SkipReason::Disabled);
         return;
-    }
+    };
     watch.changed = false;
     map.redraw = true;
-    // Whole texels, or shelter edges swim when the map follows the eye.
-    let snap = |v: f64| (v / texel).round() * texel;
-    let centre = DVec2::new(snap(eye.x), snap(eye.z));
-    *transform = Transform::from_xyz(centre.x as f32, top as f32, centre.y as f32).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
+    *transform = Transform::from_translation(drawn.camera_position().as_vec3())
+        .with_rotation(drawn.camera_rotation().as_quat());
     *global = GlobalTransform::from(*transform);
-    // Image x is world x, image y is world −z.
-    let drift = (wind * inverse_speed).as_vec2();
-    *projection = Projection::custom(ShearedProjection {
-        half_extent: 0.5 * extent as f32,
-        range: (top - bottom) as f32,
-        reference: (top - plane) as f32,
-        drift: Vec2::new(drift.x, -drift.y),
-    });
+    *projection = Projection::custom(ShearedProjection(drawn));
     camera.is_active = true;
     map.placement = Some(CoverPlacement {
-        centre_m: centre,
-        plane_m: plane,
+        centre_m: drawn.corner() + 0.5 * extent,
+        plane_m: drawn.settings().reference_height_m,
         extent_m: extent,
-        top_m: top,
-        range_m: top - bottom,
-        highest_m: top,
-        wind_m_s: wind,
-        inverse_speed_s_m: inverse_speed,
-        texels: settings.texels,
+        top_m: high_m,
+        range_m: high_m - drawn.settings().low_m,
+        highest_m: high_m,
+        wind_m_s: slope.wind_m_s(),
+        inverse_speed_s_m: slope.mean_inverse_speed_s_per_m(),
+        texels: map.texels,
     });
+    map.drawn = Some((drawn, slope));
 }

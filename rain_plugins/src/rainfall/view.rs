@@ -38,7 +38,7 @@ pub struct RainView {
     pub contrast: f32,
     /// Shutter time. Units: s. Domain: [0.0005, 0.25]. Default: 1/60. Longer: longer and fainter streaks.
     pub exposure_s: f32,
-    /// Distance over which streaks fade where they meet the scene (needs a depth prepass). Units: m. Default: 0.15.
+    /// Distance over which streaks fade where they meet the scene (needs `DepthPrepass` and `Msaa::Off`). Units: m. Default: 0.15.
     pub soft_m: f32,
 }
 
@@ -109,6 +109,7 @@ impl Plugin for RainfallPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<RainView>()
             .init_resource::<SoftwareAdapter>()
+            .init_resource::<AirAroundView>()
             .add_systems(PostUpdate, fill_containers.in_set(RainViewSystems::Views));
     }
 }
@@ -154,7 +155,7 @@ fn fill_containers(
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_)) {
             Some(SkipReason::Unsupported)
-        } else if air.closed_in {
+        } else if air.closed_in == Some(entity) {
             Some(SkipReason::Indoors)
         } else {
             None

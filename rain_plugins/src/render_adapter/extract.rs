@@ -36,18 +36,32 @@ pub(super) struct ExtractedRainView {
 /// What all views share.
 #[derive(Resource, Clone)]
 pub(super) struct ExtractedRainScene {
-    pub cover_image: AssetId<Image>,
-    pub cover: Option<CoverPlacement>,
-    pub redraw: bool,
-    pub complete: Arc<AtomicBool>,
+    /// Without it the sky is open.
+    pub cover: Option<ExtractedCover>,
+    /// Without it nothing gets wet.
+    pub surface: Option<ExtractedSurface>,
     /// Uniform surroundings, cd/m².
     pub ambient: Vec3,
     pub sun_direction: Vec3,
     /// Illuminance, lux.
     pub sun: Vec3,
+}
+
+/// The kept cover map.
+#[derive(Clone)]
+pub(super) struct ExtractedCover {
+    pub image: AssetId<Image>,
+    pub placement: Option<CoverPlacement>,
+    pub redraw: bool,
+    pub complete: Arc<AtomicBool>,
+}
+
+/// What surfaces show of the weather.
+#[derive(Clone)]
+pub(super) struct ExtractedSurface {
     /// See `SurfaceParams::state`.
-    pub surface: Vec4,
-    pub surface_buffer: AssetId<ShaderBuffer>,
+    pub state: Vec4,
+    pub buffer: AssetId<ShaderBuffer>,
     pub anchor: Vec3,
     pub wet: bool,
 }
@@ -68,24 +82,25 @@ pub(super) fn extract_rain(
         )>,
     >,
 ) {
-    let (Some(map), Some(surface)) = (map.as_ref(), surface.as_ref()) else {
-        return;
-    };
     let sun = suns
         .iter()
         .max_by(|(a, _), (b, _)| a.illuminance.total_cmp(&b.illuminance));
     commands.insert_resource(ExtractedRainScene {
-        cover_image: map.image.id(),
-        cover: map.placement,
-        redraw: map.redraw,
-        complete: map.complete.clone(),
+        cover: map.as_ref().map(|map| ExtractedCover {
+            image: map.image.id(),
+            placement: map.placement,
+            redraw: map.redraw,
+            complete: map.complete.clone(),
+        }),
         ambient: ambient.as_ref().map_or(Vec3::ZERO, |a| linear(a.color) * a.brightness),
         sun_direction: sun.map_or(Vec3::Y, |(_, t)| t.back().into()),
         sun: sun.map_or(Vec3::ZERO, |(l, _)| linear(l.color) * l.illuminance),
-        surface: surface.state,
-        surface_buffer: surface.buffer.id(),
-        anchor: surface.anchor,
-        wet: surface.wet,
+        surface: surface.as_ref().map(|surface| ExtractedSurface {
+            state: surface.state,
+            buffer: surface.handles.params.id(),
+            anchor: surface.anchor,
+            wet: surface.wet,
+        }),
     });
     for (entity, frame, camera, environment, masks) in &views {
         let mut entity = commands.entity(entity);

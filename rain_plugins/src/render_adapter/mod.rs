@@ -13,9 +13,12 @@ mod record;
 mod wet_material;
 
 use bevy::asset::RenderAssetUsages;
+use bevy::camera::RenderTarget;
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::main_transparent_pass_3d;
+use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::core_pipeline::schedule::Core3d;
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::Image;
 use bevy::prelude::*;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
@@ -24,7 +27,8 @@ use bevy::render::render_resource::{
 };
 use bevy::render::renderer::RenderAdapterInfo;
 use bevy::render::sync_component::SyncComponent;
-use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
+pub(crate) use bevy::render::RenderApp;
+use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 
 pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
 
@@ -89,6 +93,25 @@ pub(crate) fn cover_image(texels: u32) -> Image {
         texels,
         TextureFormat::Depth32Float,
         TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+    )
+}
+
+/// A depth-only camera: no colour target, so every colour pass leaves its view out.
+pub(crate) fn cover_camera(texels: u32) -> impl Bundle {
+    (
+        Name::new("rain cover view"),
+        Camera3d::default(),
+        Camera {
+            order: -100,
+            is_active: false,
+            ..default()
+        },
+        RenderTarget::None {
+            size: UVec2::splat(texels),
+        },
+        Tonemapping::None,
+        DepthPrepass,
+        Msaa::Off,
     )
 }
 

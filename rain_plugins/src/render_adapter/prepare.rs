@@ -60,20 +60,21 @@ pub(super) fn prepare_rain(
     let Some(scene) = scene else { return };
     let gpu = &mut *gpu;
     let device = device.wgpu_device();
-    let cover_image = images.get(scene.cover_image);
-    let cover_at = |eye: DVec3| match (scene.cover, cover_image) {
+    let cover = scene.cover.as_ref();
+    let cover_image = cover.and_then(|c| images.get(c.image));
+    let cover_at = |eye: DVec3| match (cover.and_then(|c| c.placement), cover_image) {
         (Some(placement), Some(_)) => placement.params(eye),
         _ => open_sky(),
     };
     let surface_params = |eye: Vec3| SurfaceParams {
         eye: eye.extend(0.0).to_array(),
-        state: scene.surface.to_array(),
+        state: scene.surface.as_ref().map_or([0.0; 4], |s| s.state.to_array()),
         cover: cover_at(eye.as_dvec3()),
     };
-    if scene.wet
-        && let Some(buffer) = buffers.get(scene.surface_buffer)
+    if let Some(surface) = scene.surface.as_ref().filter(|s| s.wet)
+        && let Some(buffer) = buffers.get(surface.buffer)
     {
-        let params = surface_params(scene.anchor);
+        let params = surface_params(surface.anchor);
         queue.write_buffer(&buffer.buffer, 0, bytemuck::bytes_of(&params));
     }
     gpu.mask_bind_groups.clear();

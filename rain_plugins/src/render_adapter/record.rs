@@ -26,10 +26,10 @@ pub(super) fn keep_cover_map(
     mut ctx: RenderContext,
 ) {
     let depth = view.into_inner();
-    let Some(scene) = scene.filter(|s| s.redraw) else {
+    let Some(cover) = scene.as_ref().and_then(|s| s.cover.as_ref()).filter(|c| c.redraw) else {
         return;
     };
-    let Some(map) = images.get(scene.cover_image) else {
+    let Some(map) = images.get(cover.image) else {
         return;
     };
     let source: &wgpu::Texture = &depth.texture;
@@ -43,7 +43,7 @@ pub(super) fn keep_cover_map(
         source.size(),
     );
     // A mesh whose pipeline is still being compiled is missing from this map: it will be drawn again.
-    scene.complete.store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
+    cover.complete.store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
     report.recorded(PassName::Cover);
 }
 

@@ -393,11 +393,11 @@ impl Default for Attached {
 pub struct RainSettings {
     /// Whether the rain plugins are in the scene at all; `false` is the scene without them. Default: true.
     pub enabled: bool,
-    /// Most quads drawn for single streaks. Domain: 0…4 000 000. Default: 200 000.
+    /// Streaks drawn singly, on average; twice as many is the hard bound. Domain: 0…4 000 000. Default: 30 000.
     pub streak_budget: u32,
     /// Gain on streak contrast, α′ = 1 − (1 − α)^contrast. Units: none. Domain: [1, 32]; 1 is physical. Default: 4.
     pub contrast: f64,
-    /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0001, 1].
+    /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0005, 0.25].
     /// Default: 1/60.
     pub exposure_s: f64,
 }
@@ -406,7 +406,7 @@ impl Default for RainSettings {
     fn default() -> Self {
         Self {
             enabled: true,
-            streak_budget: 200_000,
+            streak_budget: 30_000,
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
         }

@@ -8,7 +8,7 @@ use bevy::log::LogPlugin;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::renderer::{RenderAdapterInfo, RenderDevice};
-use bevy::render::settings::{RenderCreation, WgpuSettings};
+use bevy::render::settings::RenderCreation;
 use bevy::time::TimeUpdateStrategy;
 use bevy::window::ExitCondition;
 
@@ -18,7 +18,7 @@ use super::run::RunError;
 /// from wherever the scenario says.
 #[must_use]
 pub fn plugins() -> PluginGroupBuilder {
-    let group = DefaultPlugins
+    DefaultPlugins
         .set(WindowPlugin {
             primary_window: None,
             exit_condition: ExitCondition::DontExit,
@@ -26,7 +26,7 @@ pub fn plugins() -> PluginGroupBuilder {
         })
         .set(RenderPlugin {
             synchronous_pipeline_compilation: true,
-            render_creation: RenderCreation::Automatic(Box::new(WgpuSettings::default())),
+            render_creation: RenderCreation::Automatic(Box::default()),
             ..default()
         })
         .set(AssetPlugin {
@@ -37,16 +37,7 @@ pub fn plugins() -> PluginGroupBuilder {
         .set(LogPlugin {
             filter: "error,bevy_gltf=error".into(),
             ..default()
-        });
-    #[cfg(feature = "window")]
-    let group = without_window(group);
-    group
-}
-
-/// With a windowing feature on somewhere in the build, its event loop must stay out of a headless app.
-#[cfg(feature = "window")]
-fn without_window(group: PluginGroupBuilder) -> PluginGroupBuilder {
-    group.disable::<bevy::winit::WinitPlugin>()
+        })
 }
 
 /// Whether a graphics adapter can be had at all; asked before an app is built, because Bevy panics without one.

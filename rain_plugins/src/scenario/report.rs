@@ -179,16 +179,16 @@ fn nan_if_null<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Err
 /// Frame times. Units: ms.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Timings {
-    /// Median over frames without rain.
+    /// Median of the captured frames of a run without the rain plugins.
     pub dry_frame_ms_median: Option<f64>,
-    /// Median over frames with rain.
+    /// Median of the captured frames of a run with the rain plugins, dry moments included.
     pub wet_frame_ms_median: Option<f64>,
 }
 
 /// Memory. Units: bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Memory {
-    /// Rain's CPU state.
+    /// Largest resident size of the whole process so far.
     pub cpu_bytes: Option<u64>,
     /// Rain's buffers and textures.
     pub gpu_bytes: Option<u64>,

@@ -14,6 +14,7 @@ use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, frame_
 use super::plot;
 use super::report::{Budget, Counts, Memory, PassRow, Report, Tally, Timings};
 use super::session::Session;
+use crate::report::PassName;
 use super::timeline::{Series, Timeline, surface_name};
 
 /// Why a run gave no results.
@@ -344,6 +345,8 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
         .passes()
         .passes
         .iter()
+        // Masks are measurements, not rain.
+        .filter(|(name, _)| **name != PassName::Masks)
         .map(|(name, record)| {
             let spans: &[&str] = match name.as_str() {
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],

@@ -125,7 +125,7 @@ impl Scenario {
             );
         }
         number("rain.contrast", self.rain.contrast, 1.0, 32.0, "")?;
-        number("rain.exposure_s", self.rain.exposure_s, 1e-4, 1.0, "s")?;
+        number("rain.exposure_s", self.rain.exposure_s, 5e-4, 0.25, "s")?;
         self.check_captures()?;
         self.check_outputs()?;
         self.check_domain()?;

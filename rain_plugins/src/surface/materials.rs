@@ -8,7 +8,7 @@ use bevy::prelude::*;
 
 use super::state::{SurfaceState, create_state, follow_weather};
 use crate::cover::CoverMap;
-use crate::render_adapter::{WetMaterial, WetSurface};
+use crate::render_adapter::{RenderApp, WetMaterial, WetSurface};
 use crate::schedule::RainViewSystems;
 
 /// Keeps a mesh's material as it is, however wet the weather.
@@ -70,11 +70,15 @@ impl OriginalMaterialItem<'_, '_> {
 #[derive(Resource, Default)]
 struct WetCopies(BTreeMap<(AssetId<StandardMaterial>, [u32; 4]), Handle<WetMaterial>>);
 
-/// Makes every `StandardMaterial` wet where rain reaches it.
+/// Makes every `StandardMaterial` wet where rain reaches it. Needs the cover map: without `CoverPlugin` nothing gets
+/// wet.
 pub struct WetSurfacePlugin;
 
 impl Plugin for WetSurfacePlugin {
     fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            return; // a server has no materials
+        }
         app.register_type::<KeepDry>()
             .register_type::<SurfaceWetting>()
             .init_resource::<WetCopies>()
@@ -83,7 +87,7 @@ impl Plugin for WetSurfacePlugin {
                 PostUpdate,
                 (
                     follow_weather,
-                    (follow_originals, wet_meshes).run_if(something_is_wet),
+                    (follow_originals, wet_meshes.run_if(resource_exists::<CoverMap>)).run_if(something_is_wet),
                     dry_meshes.run_if(not(something_is_wet)),
                 )
                     .chain()
@@ -149,7 +153,7 @@ fn wet_meshes(
                 extension: WetSurface {
                     wetting,
                     cover: map.image.clone(),
-                    params: surface.buffer.clone(),
+                    params: surface.handles.params.clone(),
                 },
             })
         });

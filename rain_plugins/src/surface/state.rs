@@ -1,7 +1,6 @@
 //! What surfaces show of the weather this frame.
 
 use bevy::prelude::*;
-use bevy::render::storage::ShaderBuffer;
 use rain_ecs::prelude::*;
 
 use crate::rainfall::RainView;
@@ -20,7 +19,7 @@ pub struct SurfaceState {
     /// Something is wet, or rain falls.
     pub wet: bool,
     /// The buffer that the shaders read.
-    pub buffer: Handle<ShaderBuffer>,
+    pub handles: WetSurfaceHandles,
 }
 
 pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfaceHandles>>) {
@@ -29,7 +28,7 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
             state: Vec4::ZERO,
             anchor: Vec3::ZERO,
             wet: false,
-            buffer: handles.params.clone(),
+            handles: handles.clone(),
         });
     }
 }

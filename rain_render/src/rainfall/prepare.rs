@@ -322,9 +322,7 @@ impl RainfallViewGpu {
         }
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform()));
         if !records.is_empty() {
-            // A record is two words without padding.
-            let words: Vec<u32> = records.iter().flat_map(|r| [r.cell, r.drop]).collect();
-            queue.write_buffer(&self.records, 0, bytemuck::cast_slice(&words));
+            queue.write_buffer(&self.records, 0, bytemuck::cast_slice(records));
         }
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view = |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();

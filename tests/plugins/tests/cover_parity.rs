@@ -29,7 +29,7 @@ fn placement() -> CoverPlacement {
         top_m: 9.0,
         range_m: 12.0,
         highest_m: 8.0,
-        wind_m_s: DVec2::new(8.0, -3.0),
+        wind_m_s: DVec2::new(7.0, -3.0),
         inverse_speed_s_m: 0.169,
         texels: TEXELS,
     }

@@ -24,7 +24,7 @@ fn shoot(intensity_mm_h: f64, seed: u64) -> (Shot, u32) {
     let plan = plan(intensity_mm_h, seed);
     let mut session = plan.session(Path::new("."), |_| {});
     let shot = plan.shoot(&mut session).remove(0);
-    let drops = session.passes().drops.last().copied().unwrap_or(0);
+    let drops = session.passes().drops.back().copied().unwrap_or(0);
     (shot, drops)
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use bevy::camera::RenderTarget;
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
@@ -139,12 +140,14 @@ impl TestApp {
     }
 }
 
-/// A camera of the test apps: no multisampling, no tone curve, at (0, 1.7, 8), looking along −Z.
+/// A camera of the test apps: no multisampling, at (0, 1.7, 8), looking along −Z.
 pub fn spawn_camera(app: &mut App, target: &Handle<Image>, rain: bool) -> Entity {
     let mut camera = app.world_mut().spawn((
         Camera3d::default(),
         RenderTarget::from(target.clone()),
         Msaa::Off,
+        // Bevy's default needs look-up tables that the workspace's feature set leaves out.
+        Tonemapping::AcesFitted,
         Transform::from_xyz(0.0, 1.7, 8.0),
     ));
     if rain {

@@ -221,7 +221,7 @@ fn the_way_is_the_shortest_and_survives_cycles() {
 
 #[test]
 fn one_version_of_what_must_agree() {
-    for name in ["wgpu", "naga", "glam", "bevy_ecs", "bevy_render", "egui"] {
+    for name in ["wgpu", "naga", "glam", "bevy_ecs", "bevy_render"] {
         let versions = versions_in_use(name);
         assert_eq!(versions.len(), 1, "{name}: {versions:?}");
     }
