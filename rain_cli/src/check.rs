@@ -102,9 +102,15 @@ pub fn check(args: &CheckArgs) -> ExitCode {
     if args.json {
         let list: Vec<_> = rows
             .iter()
-            .map(|r| serde_json::json!({"scenario": r.scenario, "text": r.text, "passed": r.passed, "detail": r.detail}))
+            .map(
+                |r| serde_json::json!({"scenario": r.scenario, "text": r.text, "passed": r.passed, "detail": r.detail}),
+            )
             .collect();
-        let _ = writeln!(out, "{}", serde_json::json!({"passed": passed, "failed": failed, "rows": list}));
+        let _ = writeln!(
+            out,
+            "{}",
+            serde_json::json!({"passed": passed, "failed": failed, "rows": list})
+        );
     } else {
         for r in &rows {
             let mark = if r.passed { "ok  " } else { "FAIL" };

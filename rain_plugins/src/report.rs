@@ -104,7 +104,14 @@ impl RainReport {
 
     /// Counts a skipped pass.
     pub fn skipped(&self, pass: PassName, reason: SkipReason) {
-        *self.lock().passes.entry(pass).or_default().skipped.entry(reason).or_default() += 1;
+        *self
+            .lock()
+            .passes
+            .entry(pass)
+            .or_default()
+            .skipped
+            .entry(reason)
+            .or_default() += 1;
     }
 
     /// Notes how many drops a frame drew.

@@ -19,7 +19,12 @@ fn every_module_is_valid() {
             .unwrap_or_else(|e| panic!("{}: {}", pass.name, e.emit_to_string(&source)));
         checked += 1;
     }
-    assert_eq!(checked, std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/passes")).unwrap().count());
+    assert_eq!(
+        checked,
+        std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/passes"))
+            .unwrap()
+            .count()
+    );
 }
 
 #[test]
@@ -28,7 +33,9 @@ fn libraries_have_no_bindings_and_are_all_listed() {
         assert!(!library.source.contains("@group"), "{}", library.name);
         assert!(!library.source.contains('#'), "{} has a directive", library.name);
     }
-    let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/lib")).unwrap().count();
+    let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/lib"))
+        .unwrap()
+        .count();
     assert_eq!(compose::LIBRARIES.len(), files);
 }
 
@@ -37,7 +44,10 @@ fn wgsl_layout(module: &naga::Module, name: &str) -> Option<(usize, Vec<(String,
     module.types.iter().find_map(|(_, ty)| match &ty.inner {
         naga::TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => Some((
             *span as usize,
-            members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect(),
+            members
+                .iter()
+                .map(|m| (m.name.clone().unwrap(), m.offset as usize))
+                .collect(),
         )),
         _ => None,
     })

@@ -129,7 +129,12 @@ impl AirGrid {
             // Relative to the block: single precision is enough.
             let local = triangle.map(|p| (p / AIR_CELL_M - origin.as_dvec3()).as_vec3());
             let low = local[0].min(local[1]).min(local[2]).floor().as_ivec3().max(IVec3::ZERO);
-            let high = local[0].max(local[1]).max(local[2]).floor().as_ivec3().min(IVec3::splat(BLOCK - 1));
+            let high = local[0]
+                .max(local[1])
+                .max(local[2])
+                .floor()
+                .as_ivec3()
+                .min(IVec3::splat(BLOCK - 1));
             for z in low.z..=high.z {
                 for y in low.y..=high.y {
                     for x in low.x..=high.x {
@@ -270,13 +275,22 @@ mod tests {
         let mut grid = AirGrid::default();
         grid.set(9, vec![[a, b, c], [a, b, d], [b, c, d], [a, c, d]]);
         let centre = (a + b + c + d) / 4.0;
-        assert!(matches!(grid.flood(centre, 20.0, |p| (p - centre).length() > 8.0), Air::ClosedIn(_)));
+        assert!(matches!(
+            grid.flood(centre, 20.0, |p| (p - centre).length() > 8.0),
+            Air::ClosedIn(_)
+        ));
     }
 
     #[test]
     fn non_finite_triangles_are_left_out() {
         let mut grid = AirGrid::default();
-        grid.set(1, vec![[DVec3::NAN, DVec3::X, DVec3::Y], [DVec3::splat(f64::INFINITY), DVec3::X, DVec3::Y]]);
+        grid.set(
+            1,
+            vec![
+                [DVec3::NAN, DVec3::X, DVec3::Y],
+                [DVec3::splat(f64::INFINITY), DVec3::X, DVec3::Y],
+            ],
+        );
         assert_eq!(grid.flood(DVec3::ZERO, 2.0, |p| p.length() > 1.0), Air::Open);
     }
 }

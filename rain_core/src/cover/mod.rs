@@ -27,8 +27,8 @@
 //! through under a roof, 8–23 % with one bound. An edge is known to half a cell; what is narrower than a cell in the
 //! projected plane may be missed.
 
-mod error;
 pub mod air;
+mod error;
 pub mod height_tiles;
 pub mod lookup;
 pub mod projection;

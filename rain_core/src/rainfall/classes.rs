@@ -127,7 +127,11 @@ mod tests {
         for class in SizeClass::all() {
             let mean = s.flux_moment(0, class.min_mm, class.max_mm) / s.moment(0, class.min_mm, class.max_mm);
             // The speeds come from the measured table, whose fit errs by up to 1.3 %.
-            assert!((mean / class.speed_m_s - 1.0).abs() < 0.013, "{mean} {}", class.speed_m_s);
+            assert!(
+                (mean / class.speed_m_s - 1.0).abs() < 0.013,
+                "{mean} {}",
+                class.speed_m_s
+            );
         }
     }
 

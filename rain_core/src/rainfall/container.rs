@@ -85,7 +85,11 @@ pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) ->
         // Two panels a class: the range changes by a third inside one.
         for half in 0..2 {
             let middle = 0.5 * (class.min_mm + class.max_mm);
-            let (a, b) = if half == 0 { (class.min_mm, middle) } else { (middle, class.max_mm) };
+            let (a, b) = if half == 0 {
+                (class.min_mm, middle)
+            } else {
+                (middle, class.max_mm)
+            };
             let reach = FADE_END * range.at(0.5 * (a + b));
             sum += spectrum.moment(0, a, b) * view.solid_angle_sr / 3.0 * reach * reach * reach;
         }
@@ -156,7 +160,9 @@ impl Container {
             focal_px: view.focal_px,
             exposure_s: view.exposure_s,
         };
-        let lead = (view.eye_velocity_m_s * LEAD_TIME_S).clamp_length_max(LEAD_CAP_M).as_vec3();
+        let lead = (view.eye_velocity_m_s * LEAD_TIME_S)
+            .clamp_length_max(LEAD_CAP_M)
+            .as_vec3();
         let mut complete = true;
         for (k, class) in SizeClass::all().iter().enumerate() {
             let placement = ClassPlacement {
@@ -261,11 +267,14 @@ impl DropRecord {
     }
 }
 
-
 /// Distance from `p` to the segment from the eye (origin) to `lead`.
 fn to_segment(p: Vec3, lead: Vec3) -> f32 {
     let square = lead.length_squared();
-    let t = if square > 0.0 { (p.dot(lead) / square).clamp(0.0, 1.0) } else { 0.0 };
+    let t = if square > 0.0 {
+        (p.dot(lead) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     (p - lead * t).length()
 }
 
@@ -321,7 +330,10 @@ mod tests {
             let drawn = container.records.len() as f64;
             let expected = expected_drops(&s, &view(), kappa);
             // Streak margins at the frustum's sides add some.
-            assert!(drawn > 0.9 * expected && drawn < 1.45 * expected, "R {r}: {drawn} of {expected}");
+            assert!(
+                drawn > 0.9 * expected && drawn < 1.45 * expected,
+                "R {r}: {drawn} of {expected}"
+            );
         }
     }
 
@@ -373,7 +385,10 @@ mod tests {
         assert!(still.fill(5, &spectrum(25.0), &FieldMotion::default(), &view(), 0.6, 1 << 20));
         assert!(fast.fill(5, &spectrum(25.0), &FieldMotion::default(), &moving, 0.6, 1 << 20));
         let furthest = |c: &Container| {
-            c.records.iter().map(|r| -r.position(5, &c.classes).z).fold(0.0, f32::max)
+            c.records
+                .iter()
+                .map(|r| -r.position(5, &c.classes).z)
+                .fold(0.0, f32::max)
         };
         assert!(furthest(&fast) > furthest(&still) + 3.0);
         let all: std::collections::BTreeSet<(u32, u32)> = fast.records.iter().map(|r| (r.cell, r.drop)).collect();

@@ -43,13 +43,21 @@ pub fn cell_key(seed: u64, class: u32, cell: IVec3) -> [u32; 3] {
 /// Hash of drop `index`: [rank increment, diameter, unused].
 #[must_use]
 pub fn drop_marks(key: [u32; 3], index: u32) -> [u32; 3] {
-    pcg3d([key[0] ^ index.wrapping_mul(0x9E37_79B9), key[1].wrapping_add(index), key[2]])
+    pcg3d([
+        key[0] ^ index.wrapping_mul(0x9E37_79B9),
+        key[1].wrapping_add(index),
+        key[2],
+    ])
 }
 
 /// Hash of drop `index`: [x, y, z] inside the cell.
 #[must_use]
 pub fn drop_place(key: [u32; 3], index: u32) -> [u32; 3] {
-    pcg3d([key[1] ^ index.wrapping_mul(0x85EB_CA6B), key[2].wrapping_add(index), key[0]])
+    pcg3d([
+        key[1] ^ index.wrapping_mul(0x85EB_CA6B),
+        key[2].wrapping_add(index),
+        key[0],
+    ])
 }
 
 /// Visits the drops of one cell in order of rank, up to `max_rank`.
@@ -295,7 +303,12 @@ mod tests {
         let threshold = Threshold::new(&class, &spectrum(0.0));
         let mut any = false;
         for i in 0..1000 {
-            for_each_drop(&class, cell_key(1, 0, IVec3::splat(i)), threshold.scan_limit(), |_, _| any = true);
+            for_each_drop(
+                &class,
+                cell_key(1, 0, IVec3::splat(i)),
+                threshold.scan_limit(),
+                |_, _| any = true,
+            );
         }
         assert!(!any);
     }

@@ -11,8 +11,6 @@ pub use container::{
     ClassPlacement, Container, DrawRange, DropRecord, FADE_END, LEAD_CAP_M, LEAD_TIME_S, RANGE_CAP_M, RainViewVolume,
     expected_drops, quality_for_budget,
 };
-pub use field::{
-    Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop,
-};
+pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
 pub use spectrum::{Distribution, MAX_INTENSITY_MM_H, Spectrum};
 pub use terminal_velocity::{MAX_FITTED_DIAMETER_MM, density_factor, terminal_velocity};

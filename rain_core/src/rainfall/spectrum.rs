@@ -57,7 +57,13 @@ impl Spectrum {
     /// # Errors
     /// When `intensity_mm_h` is not finite or outside [0, 500].
     pub fn new(distribution: Distribution, intensity_mm_h: f64) -> Result<Self, ConfigError> {
-        let r = in_range("intensity_mm_h", intensity_mm_h, 0.0, MAX_INTENSITY_MM_H, "0 to 500 mm/h")?;
+        let r = in_range(
+            "intensity_mm_h",
+            intensity_mm_h,
+            0.0,
+            MAX_INTENSITY_MM_H,
+            "0 to 500 mm/h",
+        )?;
         // Below 1e-4 mm/h the slope would grow without limit; such rain is drizzle of that slope, thinned.
         let slope = distribution.slope_at_1_mm_h() * ops::pow(r.max(1e-4), -0.21);
         let unit_flux = FLUX_FACTOR * weighted_integral(slope, 3, 0.0, f64::INFINITY, terminal_velocity);

@@ -62,7 +62,11 @@ mod tests {
             (50.0, 9.1781),
         ];
         for (d, v) in table {
-            assert!((terminal_velocity(d) - v).abs() < 6e-5, "D = {d}: {}", terminal_velocity(d));
+            assert!(
+                (terminal_velocity(d) - v).abs() < 6e-5,
+                "D = {d}: {}",
+                terminal_velocity(d)
+            );
         }
     }
 

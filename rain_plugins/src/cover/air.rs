@@ -131,7 +131,11 @@ fn take_in(
                 continue;
             };
             let id = OccluderId(owner);
-            let taken = if known { cover.replace(id, &triangles) } else { cover.add(id, &triangles) };
+            let taken = if known {
+                cover.replace(id, &triangles)
+            } else {
+                cover.add(id, &triangles)
+            };
             if taken.is_ok() {
                 s.air.set(owner, triangles);
                 s.owners.insert(owner);

@@ -221,7 +221,10 @@ fn aim_view(
         return;
     };
     camera.is_active = false;
-    let view = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation().as_dvec3());
+    let view = views
+        .iter()
+        .find(|(_, c)| c.is_active)
+        .map(|(t, _)| t.translation().as_dvec3());
     let wet = surface.is_some_and(|s| s.wet);
     let reason = match view {
         _ if !settings.enabled => Some(SkipReason::Disabled),
@@ -276,8 +279,8 @@ fn aim_view(
     };
     watch.changed = false;
     map.redraw = true;
-    *transform = Transform::from_translation(drawn.camera_position().as_vec3())
-        .with_rotation(drawn.camera_rotation().as_quat());
+    *transform =
+        Transform::from_translation(drawn.camera_position().as_vec3()).with_rotation(drawn.camera_rotation().as_quat());
     *global = GlobalTransform::from(*transform);
     *projection = Projection::custom(ShearedProjection(drawn));
     camera.is_active = true;

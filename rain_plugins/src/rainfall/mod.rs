@@ -5,4 +5,4 @@ mod view;
 
 pub use motion::ViewMotion;
 pub(crate) use view::SoftwareAdapter;
-pub use view::{RainView, RainViewFrame, RainfallPlugin, MAX_CONTRAST, MAX_STREAK_BUDGET};
+pub use view::{MAX_CONTRAST, MAX_STREAK_BUDGET, RainView, RainViewFrame, RainfallPlugin};

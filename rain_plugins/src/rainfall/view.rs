@@ -60,11 +60,29 @@ impl RainView {
     /// # Errors
     /// Names the first field that is not finite or outside its domain.
     pub fn validated(self) -> Result<Self, ConfigError> {
-        in_range("contrast", f64::from(self.contrast), 1.0, f64::from(MAX_CONTRAST), "1 to 32")?;
-        in_range("exposure_s", f64::from(self.exposure_s), 0.0005, 0.25, "0.0005 to 0.25 s")?;
+        in_range(
+            "contrast",
+            f64::from(self.contrast),
+            1.0,
+            f64::from(MAX_CONTRAST),
+            "1 to 32",
+        )?;
+        in_range(
+            "exposure_s",
+            f64::from(self.exposure_s),
+            0.0005,
+            0.25,
+            "0.0005 to 0.25 s",
+        )?;
         in_range("soft_m", f64::from(self.soft_m), 0.0, 10.0, "0 to 10 m")?;
         let budget = self.streak_budget.unwrap_or_default();
-        in_range("streak_budget", f64::from(budget), 0.0, f64::from(MAX_STREAK_BUDGET), "0 to 4000000")?;
+        in_range(
+            "streak_budget",
+            f64::from(budget),
+            0.0,
+            f64::from(MAX_STREAK_BUDGET),
+            "0 to 4000000",
+        )?;
         Ok(self)
     }
 }
@@ -126,7 +144,15 @@ fn fill_containers(
     report: Res<RainReport>,
     air: Res<AirAroundView>,
     mut errors: MessageWriter<RainConfigError>,
-    mut views: Query<(Entity, Ref<RainView>, &Camera, &Projection, &GlobalTransform, &mut ViewMotion, &mut RainViewFrame)>,
+    mut views: Query<(
+        Entity,
+        Ref<RainView>,
+        &Camera,
+        &Projection,
+        &GlobalTransform,
+        &mut ViewMotion,
+        &mut RainViewFrame,
+    )>,
 ) {
     // Seconds since the last tick: frames lie between ticks.
     let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
@@ -166,7 +192,9 @@ fn fill_containers(
         }
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, &motion, settings.exposure_s);
-        let budget = settings.streak_budget.unwrap_or(if software.0 { 30_000 } else { 100_000 });
+        let budget = settings
+            .streak_budget
+            .unwrap_or(if software.0 { 30_000 } else { 100_000 });
         let target = quality_for_budget(field.spectrum(), &volume, f64::from(budget)).max(1e-6);
         let kappa = match frame.kappa {
             // Low-passed while the view runs; at once after a pause, when nobody sees the jump.
@@ -182,7 +210,14 @@ fn fill_containers(
         let field_motion = field.motion_after(since_tick);
         // The budget is a mean; twice it is the hard bound on memory.
         let complete = Arc::get_mut(&mut container).is_some_and(|c| {
-            c.fill(seed.0, field.spectrum(), &field_motion, &volume, kappa, 2 * budget as usize + 1024)
+            c.fill(
+                seed.0,
+                field.spectrum(),
+                &field_motion,
+                &volume,
+                kappa,
+                2 * budget as usize + 1024,
+            )
         });
         if !complete {
             warn_once!("a rain view holds more than twice its streak budget; the rest is left out");

@@ -21,13 +21,11 @@ use bevy::core_pipeline::schedule::Core3d;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::Image;
 use bevy::prelude::*;
+pub(crate) use bevy::render::RenderApp;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
-use bevy::render::render_resource::{
-    Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
-};
+use bevy::render::render_resource::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 use bevy::render::renderer::RenderAdapterInfo;
 use bevy::render::sync_component::SyncComponent;
-pub(crate) use bevy::render::RenderApp;
 use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 
 pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};

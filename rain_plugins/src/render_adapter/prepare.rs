@@ -1,6 +1,7 @@
 //! Uploads and bind groups, once a frame.
 
 use std::collections::HashMap;
+use std::sync::atomic::Ordering::Relaxed;
 
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::math::{DVec3, Mat4, Vec2, Vec3};
@@ -30,6 +31,10 @@ pub(super) struct RainGpu {
 
 impl FromWorld for RainGpu {
     fn from_world(world: &mut World) -> Self {
+        // On a new device the kept map is empty: it has to be drawn again.
+        if let Some(scene) = world.get_resource::<ExtractedRainScene>() {
+            scene.complete.store(false, Relaxed);
+        }
         let device = world.resource::<RenderDevice>().wgpu_device();
         Self {
             rainfall: RainfallGpu::new(device),
@@ -122,9 +127,9 @@ pub(super) fn prepare_rain(
             },
             lighting: Lighting {
                 environment_scale: environment.as_ref().map_or(0.0, |(_, scale)| scale * camera.exposure),
-                environment_max_level: environment
-                    .as_ref()
-                    .map_or(0.0, |(image, _)| image.texture_descriptor.mip_level_count.saturating_sub(1) as f32),
+                environment_max_level: environment.as_ref().map_or(0.0, |(image, _)| {
+                    image.texture_descriptor.mip_level_count.saturating_sub(1) as f32
+                }),
                 ambient: scene.ambient * camera.exposure,
                 sun_direction: scene.sun_direction,
                 sun: scene.sun * camera.exposure,
@@ -134,7 +139,9 @@ pub(super) fn prepare_rain(
         let textures = RainfallTextures {
             cover: cover_image.map(|i| -> &wgpu::TextureView { &i.texture_view }),
             scene_depth,
-            environment: environment.as_ref().map(|(i, _)| -> &wgpu::TextureView { &i.texture_view }),
+            environment: environment
+                .as_ref()
+                .map(|(i, _)| -> &wgpu::TextureView { &i.texture_view }),
         };
         let slot = gpu.views.entry(entity).or_insert_with(|| RainfallViewGpu::new(device));
         slot.prepare(device, &queue, &gpu.rainfall, &input, textures);
@@ -144,4 +151,3 @@ pub(super) fn prepare_rain(
     });
     report.gpu_memory(cover_bytes + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>());
 }
-

@@ -37,19 +37,25 @@ pub(super) fn keep_cover_map(
     if source.size() != target.size() {
         return;
     }
-    ctx.command_encoder().copy_texture_to_texture(
-        source.as_image_copy(),
-        target.as_image_copy(),
-        source.size(),
-    );
+    ctx.command_encoder()
+        .copy_texture_to_texture(source.as_image_copy(), target.as_image_copy(), source.size());
     // A mesh whose pipeline is still being compiled is missing from this map: it will be drawn again.
-    cover.complete.store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
+    cover
+        .complete
+        .store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
     report.recorded(PassName::Cover);
 }
 
 /// Projects and draws a view's streaks over its colour target, and its masks where somebody asked for them.
 pub(super) fn rainfall(
-    view: ViewQuery<(Entity, &ExtractedView, &ExtractedRainView, &ViewTarget, &ViewDepthTexture, &Msaa)>,
+    view: ViewQuery<(
+        Entity,
+        &ExtractedView,
+        &ExtractedRainView,
+        &ViewTarget,
+        &ViewDepthTexture,
+        &Msaa,
+    )>,
     gpu: Res<RainGpu>,
     images: Res<RenderAssets<GpuImage>>,
     report: Res<RainReport>,
@@ -58,7 +64,10 @@ pub(super) fn rainfall(
     let (entity, view, rain, target, depth, msaa) = view.into_inner();
     let recorder = ctx.diagnostic_recorder();
     let recorder = recorder.as_deref();
-    let view_gpu = gpu.views.get(&entity).filter(|v| rain.shutter.is_some() && v.drops() > 0);
+    let view_gpu = gpu
+        .views
+        .get(&entity)
+        .filter(|v| rain.shutter.is_some() && v.drops() > 0);
 
     if let Some(view_gpu) = view_gpu {
         let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -87,9 +96,11 @@ pub(super) fn rainfall(
     }
 
     let Some(masks) = &rain.masks else { return };
-    let (Some(rain_mask), Some(wet_mask), Some(depth_mask)) =
-        (images.get(&masks.rain), images.get(&masks.wet), images.get(&masks.depth))
-    else {
+    let (Some(rain_mask), Some(wet_mask), Some(depth_mask)) = (
+        images.get(&masks.rain),
+        images.get(&masks.wet),
+        images.get(&masks.depth),
+    ) else {
         return;
     };
     if *msaa != Msaa::Off {

@@ -8,8 +8,8 @@ use super::expectation::{
 };
 use super::file::{Mask, Scenario};
 use super::masks::{coverage_from_texel, depth_from_texel};
-use super::timeline::{Timeline, surface_name};
 use super::report::{Budget, Counts, ExpectationRow, PassRow, brief};
+use super::timeline::{Timeline, surface_name};
 
 /// The masks of one capture, row by row from the top left, as in their files.
 #[derive(Debug, Clone, Copy, Default)]

@@ -2,8 +2,8 @@ use rain_core::weather::SurfaceClass;
 
 use super::super::expectation::{Change, CountCheck, PassCheck};
 use super::super::file::{Captures, Outputs};
-use super::super::timeline::Series;
 use super::super::report::Tally;
+use super::super::timeline::Series;
 use super::*;
 
 const SIZE: [u32; 2] = [8, 4];

@@ -57,7 +57,13 @@ fn chain(data: &mut Vec<u8>, width: u32, height: u32, srgb: bool) -> u32 {
                 for c in 0..4 {
                     let mean = corners
                         .iter()
-                        .map(|i| if c < 3 { to_linear[data[i + c] as usize] } else { f32::from(data[i + c]) / 255.0 })
+                        .map(|i| {
+                            if c < 3 {
+                                to_linear[data[i + c] as usize]
+                            } else {
+                                f32::from(data[i + c]) / 255.0
+                            }
+                        })
                         .sum::<f32>()
                         * 0.25;
                     let value = if srgb && c < 3 { mean.powf(1.0 / 2.2) } else { mean };

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 use thiserror::Error;
 
 use super::font;
-use super::timeline::{Timeline, Series};
+use super::timeline::{Series, Timeline};
 
 /// A plot could not be drawn.
 #[derive(Debug, Error)]

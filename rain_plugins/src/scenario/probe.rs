@@ -107,7 +107,11 @@ pub(super) fn refresh(app: &mut App) -> Result<(), RunError> {
         return Ok(());
     };
     let camera = app.world().resource::<Stage>().camera;
-    let eye = app.world().get::<Transform>(camera).map(|t| t.translation).unwrap_or_default();
+    let eye = app
+        .world()
+        .get::<Transform>(camera)
+        .map(|t| t.translation)
+        .unwrap_or_default();
     let faces = Faces::default();
     let mut readers = Vec::new();
     let world = app.world_mut();
@@ -147,7 +151,9 @@ pub(super) fn refresh(app: &mut App) -> Result<(), RunError> {
     }
     let mut drawn = faces.lock().unwrap_or_else(PoisonError::into_inner).clone();
     if drawn.len() != FACES.len() {
-        return Err(RunError::Renderer("the reflection probe did not come back from the GPU".into()));
+        return Err(RunError::Renderer(
+            "the reflection probe did not come back from the GPU".into(),
+        ));
     }
     drawn.sort_by_key(|(i, _)| *i);
     let texels: Vec<Vec<[f32; 3]>> = drawn.iter().map(|(_, bytes)| half_texels(bytes)).collect();
@@ -179,8 +185,15 @@ pub(super) fn refresh(app: &mut App) -> Result<(), RunError> {
 
 /// Linear RGB of half-precision RGBA texels.
 fn half_texels(bytes: &[u8]) -> Vec<[f32; 3]> {
-    let half = |b: &[u8]| half::f16::from_le_bytes([b[0], b[1]]).to_f32().clamp(0.0, 1000.0);
-    bytes.chunks_exact(8).map(|t| [half(&t[0..2]), half(&t[2..4]), half(&t[4..6])]).collect()
+    // Broken normals of a model make texels that are no numbers; one of them would blacken the whole filtered map.
+    let half = |b: &[u8]| {
+        let v = half::f16::from_le_bytes([b[0], b[1]]).to_f32();
+        if v.is_nan() { 0.0 } else { v.clamp(0.0, 1000.0) }
+    };
+    bytes
+        .chunks_exact(8)
+        .map(|t| [half(&t[0..2]), half(&t[2..4]), half(&t[4..6])])
+        .collect()
 }
 
 /// The drawn value towards a direction, linear between texels.
@@ -201,7 +214,10 @@ fn look_up(faces: &[Vec<[f32; 3]>], direction: Vec3) -> [f32; 3] {
     let (x1, y1) = ((x0 + 1).min(last as usize), (y0 + 1).min(last as usize));
     let (u, v) = (px - x0 as f32, py - y0 as f32);
     let at = |x: usize, y: usize| {
-        let t = faces[index].get(y * SPECULAR_PX as usize + x).copied().unwrap_or_default();
+        let t = faces[index]
+            .get(y * SPECULAR_PX as usize + x)
+            .copied()
+            .unwrap_or_default();
         Vec3::from_array(t)
     };
     let top = at(x0, y0).lerp(at(x1, y0), u);

@@ -14,8 +14,8 @@ use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, frame_
 use super::plot;
 use super::report::{Budget, Counts, Memory, PassRow, Report, Tally, Timings};
 use super::session::Session;
-use crate::report::PassName;
 use super::timeline::{Series, Timeline, surface_name};
+use crate::report::PassName;
 
 /// Why a run gave no results.
 #[derive(Debug, Error)]

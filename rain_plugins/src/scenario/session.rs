@@ -13,10 +13,10 @@ use image::RgbImage;
 use rain_ecs::prelude::*;
 
 use super::file::{Mask, Scenario};
-use super::{headless, probe};
 use super::masks::{texel_from_coverage, texel_from_depth};
 use super::run::RunError;
 use super::stage::{self, Stage};
+use super::{headless, probe};
 use crate::RainPlugins;
 use crate::report::{RainReport, Report as PassReport};
 

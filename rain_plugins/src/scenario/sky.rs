@@ -202,7 +202,10 @@ impl SkyModel {
 /// Generates the maps.
 #[must_use]
 pub fn generate(model: &SkyModel, handedness: Handedness) -> SkyMaps {
-    let sky = Cube::from_fn(SKY_PX, handedness, |d| model.radiance(d, false));
+    // Seen below the horizon is mist, not the ground that only lights and is mirrored.
+    let sky = Cube::from_fn(SKY_PX, handedness, |d| {
+        model.radiance([d[0], d[1].max(0.0), d[2]], false)
+    });
     let source = Cube::from_fn(SPECULAR_PX, handedness, |d| model.radiance(d, true));
     let specular = prefilter(source.clone());
     // 32 pixels: level 2 of the source.
@@ -301,7 +304,11 @@ impl Cube {
     #[must_use]
     pub fn rgba16_bytes(&self) -> Vec<u8> {
         let half = |v: f32| half::f16::from_f32(v).to_le_bytes();
-        self.texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0].map(half)).flatten().collect()
+        self.texels
+            .iter()
+            .flat_map(|t| [t[0], t[1], t[2], 1.0].map(half))
+            .flatten()
+            .collect()
     }
 
     /// This level and all smaller ones down to 1 pixel, each the mean of four texels.

@@ -272,7 +272,11 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
     }
     if let Some(visibility) = environment.fog_visibility_m {
         // The veil has the horizon's luminance; fog colours are blended in after exposure.
-        let exposed = brightness * Exposure { ev100: environment.exposure_ev100 as f32 }.exposure();
+        let exposed = brightness
+            * Exposure {
+                ev100: environment.exposure_ev100 as f32,
+            }
+            .exposure();
         let horizon = sky.tint.map(|t| (t / sky.zenith_to_horizon) as f32 * exposed);
         camera.insert(DistanceFog {
             color: Color::linear_rgb(horizon[0], horizon[1], horizon[2]),

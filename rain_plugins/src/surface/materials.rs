@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bevy::asset::AssetId;
+use bevy::asset::{AssetEventSystems, AssetId};
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 
@@ -86,12 +86,16 @@ impl Plugin for WetSurfacePlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    follow_weather,
-                    (follow_originals, wet_meshes.run_if(resource_exists::<CoverMap>)).run_if(something_is_wet),
-                    dry_meshes.run_if(not(something_is_wet)),
+                    follow_weather.in_set(RainViewSystems::Surfaces),
+                    // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
+                    // once with the pipeline of one material and the bindings of the other, which stops the renderer.
+                    (
+                        (follow_originals, wet_meshes.run_if(resource_exists::<CoverMap>)).run_if(something_is_wet),
+                        dry_meshes.run_if(not(something_is_wet)),
+                    )
+                        .chain()
+                        .before(AssetEventSystems),
                 )
-                    .chain()
-                    .in_set(RainViewSystems::Surfaces)
                     .run_if(resource_exists::<SurfaceState>),
             );
     }

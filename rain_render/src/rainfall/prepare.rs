@@ -325,7 +325,8 @@ impl RainfallViewGpu {
             queue.write_buffer(&self.records, 0, bytemuck::cast_slice(records));
         }
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let view = |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();
+        let view =
+            |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();
         let cover = view(textures.cover, &gpu.no_depth);
         let scene = view(textures.scene_depth, &gpu.no_depth);
         let environment = view(textures.environment, &gpu.no_environment);

@@ -53,7 +53,12 @@ fn heights(p: &CoverPlacement) -> Vec<Option<f64>> {
     let texel = p.extent_m / f64::from(TEXELS);
     let corner = p.centre_m - 0.5 * p.extent_m;
     (0..TEXELS * TEXELS)
-        .map(|i| met(p, corner + (DVec2::new(f64::from(i % TEXELS), f64::from(i / TEXELS)) + 0.5) * texel))
+        .map(|i| {
+            met(
+                p,
+                corner + (DVec2::new(f64::from(i % TEXELS), f64::from(i / TEXELS)) + 0.5) * texel,
+            )
+        })
         .collect()
 }
 
@@ -129,7 +134,9 @@ fn depth_map(gpu: &Device, p: &CoverPlacement, heights: &[Option<f64>]) -> wgpu:
         }],
     });
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: None,
@@ -209,30 +216,54 @@ fn cover_look_up_agrees_with_the_cpu_and_with_geometry_and_a_single_shift_does_n
         let y = place.y - p.plane_m;
         let q = DVec2::new(place.x, place.z) + y * p.inverse_speed_s_m * p.wind_m_s - corner;
         let (q, y, highest) = (q.as_vec2(), y as f32, (p.highest_m - p.plane_m) as f32);
-        if single { covered_from(y, q, y, shift, height) } else { covered(q, y, shift, highest, height) }
+        if single {
+            covered_from(y, q, y, shift, height)
+        } else {
+            covered(q, y, shift, highest, height)
+        }
     };
     let points = points();
-    let on_cpu: Vec<bool> = points.iter().map(|(place, inverse)| ask(place, *inverse, false)).collect();
-    let single: Vec<bool> = points.iter().map(|(place, inverse)| ask(place, *inverse, true)).collect();
+    let on_cpu: Vec<bool> = points
+        .iter()
+        .map(|(place, inverse)| ask(place, *inverse, false))
+        .collect();
+    let single: Vec<bool> = points
+        .iter()
+        .map(|(place, inverse)| ask(place, *inverse, true))
+        .collect();
     let exact: Vec<bool> = points
         .iter()
         .map(|(place, inverse)| {
             ROOFS.iter().any(|roof| {
                 let over = DVec2::new(place.x, place.z) - (roof[4] - place.y) * *inverse * p.wind_m_s;
-                roof[4] > place.y
-                    && (roof[0]..=roof[2]).contains(&over.x)
-                    && (roof[1]..=roof[3]).contains(&over.y)
+                roof[4] > place.y && (roof[0]..=roof[2]).contains(&over.x) && (roof[1]..=roof[3]).contains(&over.y)
             })
         })
         .collect();
     let covered = exact.iter().filter(|c| **c).count();
-    assert!(covered > 5_000 && covered < 35_000, "{covered} of {} covered", exact.len());
-    assert!(share(&on_gpu, &on_cpu) < 0.005, "GPU and CPU differ in {}", share(&on_gpu, &on_cpu));
+    assert!(
+        covered > 5_000 && covered < 35_000,
+        "{covered} of {} covered",
+        exact.len()
+    );
+    assert!(
+        share(&on_gpu, &on_cpu) < 0.005,
+        "GPU and CPU differ in {}",
+        share(&on_gpu, &on_cpu)
+    );
     let off = share(&on_gpu, &exact);
     assert!(off < 0.03, "misclassified {off}");
     // One look-up's correction alone is no substitute.
-    assert!(share(&single, &on_cpu) > 0.02, "a single shift differs in {}", share(&single, &on_cpu));
-    assert!(share(&single, &exact) > 1.5 * off, "a single shift: {}, three: {off}", share(&single, &exact));
+    assert!(
+        share(&single, &on_cpu) > 0.02,
+        "a single shift differs in {}",
+        share(&single, &on_cpu)
+    );
+    assert!(
+        share(&single, &exact) > 1.5 * off,
+        "a single shift: {}, three: {off}",
+        share(&single, &exact)
+    );
 }
 
 #[test]

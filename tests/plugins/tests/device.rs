@@ -62,11 +62,16 @@ impl Device {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = self
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes);
         self.queue.submit([encoder.finish()]);
-        copy.slice(..).map_async(wgpu::MapMode::Read, |mapped| mapped.expect("the buffer is mapped"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        copy.slice(..)
+            .map_async(wgpu::MapMode::Read, |mapped| mapped.expect("the buffer is mapped"));
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .expect("the device answers");
         copy.slice(..).get_mapped_range().to_vec()
     }
 
@@ -108,7 +113,9 @@ impl Device {
             layout: &pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = self
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&pipeline);

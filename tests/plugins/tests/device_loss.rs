@@ -27,6 +27,14 @@ fn passes_are_recorded_again_after_the_device_was_lost() {
 
     test.reset();
     let lost = test.app.world().resource::<RenderDevice>().clone();
+    // Two devices may have the same identity, since each instance counts its own: ask when the resource was replaced.
+    let replaced = |test: &TestApp| {
+        test.app
+            .world()
+            .get_resource_change_ticks::<RenderDevice>()
+            .map(|t| t.changed)
+    };
+    let first = replaced(&test);
     lost.wgpu_device().destroy();
     // The callback that reports the loss fires from a poll.
     let _ = lost.wgpu_device().poll(wgpu::PollType::Poll);
@@ -34,22 +42,29 @@ fn passes_are_recorded_again_after_the_device_was_lost() {
     for _ in 0..400 {
         test.app.update();
         std::thread::sleep(Duration::from_millis(5));
-        let device = test.app.world().resource::<RenderDevice>();
-        rebuilt = device.wgpu_device() != lost.wgpu_device();
+        rebuilt = replaced(&test) != first;
         if rebuilt {
             break;
         }
     }
     assert!(rebuilt, "no new device");
     test.frames(10, FRAME);
-    assert!(test.recorded(PassName::Rainfall) >= 10, "{}", test.recorded(PassName::Rainfall));
+    assert!(
+        test.recorded(PassName::Rainfall) >= 10,
+        "{}",
+        test.recorded(PassName::Rainfall)
+    );
     // The kept cover map went with the device: without a new one rain would fall through the roof.
     assert!(test.recorded(PassName::Cover) > 0, "the cover map was not drawn again");
     // What is drawn is a picture again, with the scene in it; the camera has not moved.
     let after = test.picture();
-    let differing = before.pixels().zip(after.pixels()).filter(|(a, b)| {
-        a.0.iter().zip(b.0).any(|(x, y)| x.abs_diff(y) > 40)
-    });
+    let differing = before
+        .pixels()
+        .zip(after.pixels())
+        .filter(|(a, b)| a.0.iter().zip(b.0).any(|(x, y)| x.abs_diff(y) > 40));
     let (differing, all) = (differing.count(), before.pixels().len());
-    assert!(differing * 5 < all, "{differing} of {all} pixels are others than before the loss");
+    assert!(
+        differing * 5 < all,
+        "{differing} of {all} pixels are others than before the loss"
+    );
 }

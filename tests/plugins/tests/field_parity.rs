@@ -112,7 +112,9 @@ impl FieldView {
         };
         let mut view = RainfallViewGpu::new(&gpu.device);
         view.prepare(&gpu.device, &gpu.queue, pipelines, &input, RainfallTextures::default());
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             encode_project(&mut pass, pipelines, &view);
@@ -168,10 +170,16 @@ fn projected_drops_are_where_the_cpu_puts_them_and_another_seed_is_found() {
         compared += 1;
         classes[class] += 1;
     }
-    assert!(compared > 5_000 && classes.iter().all(|n| *n > 0), "{compared} drops, {classes:?}");
+    assert!(
+        compared > 5_000 && classes.iter().all(|n| *n > 0),
+        "{compared} drops, {classes:?}"
+    );
     // 1e-6 m at 0.2 m is 3e-3 px.
     assert!(worst < 0.02, "{worst} px");
-    assert!(misplaced_by_another_seed * 100 > compared * 99, "{misplaced_by_another_seed} of {compared}");
+    assert!(
+        misplaced_by_another_seed * 100 > compared * 99,
+        "{misplaced_by_another_seed} of {compared}"
+    );
 }
 
 #[test]
@@ -182,13 +190,23 @@ fn every_drop_beyond_its_range_is_hidden_and_every_one_inside_is_drawn() {
     let view = FieldView::default();
     let container = view.container(3, &spectrum);
     // The same records, drawn for half the quality: those between the two ranges must vanish.
-    let strict = FieldView { kappa: 0.5, ..FieldView::default() };
+    let strict = FieldView {
+        kappa: 0.5,
+        ..FieldView::default()
+    };
     let streaks = strict.streaks(&gpu, &pipelines, 3, &container);
     let kept = strict.container(3, &spectrum).records.len();
     let drawn = streaks.iter().filter(|s| s.shape[2] > 0.0).count();
-    assert!(container.records.len() > 3 * kept, "{} and {kept}", container.records.len());
+    assert!(
+        container.records.len() > 3 * kept,
+        "{} and {kept}",
+        container.records.len()
+    );
     // The container keeps a margin of one streak at the sides and draws none closer than 0.1 m.
-    assert!(drawn <= kept && drawn * 100 > kept * 97, "{drawn} drawn, {kept} within the range");
+    assert!(
+        drawn <= kept && drawn * 100 > kept * 97,
+        "{drawn} drawn, {kept} within the range"
+    );
 }
 
 #[test]

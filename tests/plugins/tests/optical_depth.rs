@@ -61,10 +61,11 @@ fn expected(spectrum: &Spectrum, view: &FieldView) -> f64 {
     };
     let (a, b, n) = (CLASS_EDGES_MM[0], CLASS_EDGES_MM[12], 4000);
     let h = (b - a) / f64::from(n);
-    let f = |d: f64| {
-        spectrum.concentration(d) * std::f64::consts::FRAC_PI_4 * d * d * 1e-6 * (range.at(d) - 0.15).max(0.0)
-    };
-    let inner: f64 = (1..n).map(|i| f(a + h * f64::from(i)) * if i % 2 == 1 { 4.0 } else { 2.0 }).sum();
+    let f =
+        |d: f64| spectrum.concentration(d) * std::f64::consts::FRAC_PI_4 * d * d * 1e-6 * (range.at(d) - 0.15).max(0.0);
+    let inner: f64 = (1..n)
+        .map(|i| f(a + h * f64::from(i)) * if i % 2 == 1 { 4.0 } else { 2.0 })
+        .sum();
     (f(a) + f(b) + inner) * h / 3.0
 }
 
@@ -78,7 +79,10 @@ fn optical_depth_of_the_drawn_drops_is_extinction_times_path_within_5_percent() 
         let expected = expected(&spectrum, &narrow());
         assert!(expected > 0.001, "{expected}");
         let error = found / expected - 1.0;
-        assert!(error.abs() < 0.05, "{intensity} mm/h: {found}, extinction times path {expected} ({error:+.3})");
+        assert!(
+            error.abs() < 0.05,
+            "{intensity} mm/h: {found}, extinction times path {expected} ({error:+.3})"
+        );
     }
 }
 
@@ -101,9 +105,15 @@ fn optical_depth_does_not_change_with_the_shutter_or_the_speed_of_the_camera() {
     let slow_shutter = depth(1.6, 1.0 / 30.0, 0.0);
     let other_quality = depth(0.8, 1.0 / 30.0, 0.0);
     let moving = depth(0.8, 1.0 / 60.0, 8.0);
-    assert!((slow_shutter / still - 1.0).abs() < 0.02, "{still} at 1/60 s, {slow_shutter} at 1/30 s");
+    assert!(
+        (slow_shutter / still - 1.0).abs() < 0.02,
+        "{still} at 1/60 s, {slow_shutter} at 1/30 s"
+    );
     // A moving camera looks a metre further to its side: a few drops differ.
-    assert!((moving / still - 1.0).abs() < 0.08, "{still} standing, {moving} at 8 m/s");
+    assert!(
+        (moving / still - 1.0).abs() < 0.08,
+        "{still} standing, {moving} at 8 m/s"
+    );
     // Other drops are another depth: the comparison can fail.
     assert!((other_quality / still - 1.0).abs() > 0.2, "{still}, {other_quality}");
 }

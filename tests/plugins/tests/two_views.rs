@@ -13,7 +13,12 @@ const SIZE: [u32; 2] = [96, 54];
 
 /// World places of the drops that a camera drew in the last frame, in half millimetres.
 fn drops(test: &mut TestApp, camera: Entity) -> BTreeSet<[i64; 3]> {
-    let eye = test.world().get::<GlobalTransform>(camera).expect("a camera").translation().as_dvec3();
+    let eye = test
+        .world()
+        .get::<GlobalTransform>(camera)
+        .expect("a camera")
+        .translation()
+        .as_dvec3();
     let frame = test.world().get::<RainViewFrame>(camera).expect("a rain view");
     let place = |p: Vec3| (p.as_dvec3() + eye).to_array().map(|v| (v * 2000.0).round() as i64);
     frame
@@ -54,19 +59,36 @@ fn two_cameras_both_draw_and_see_the_same_drops() {
 
     // Two cameras in one place show one picture.
     let first_target = test.target.clone();
-    let (a, b, c) = (test.picture_of(&first_target), test.picture_of(&same), test.picture_of(&aside));
+    let (a, b, c) = (
+        test.picture_of(&first_target),
+        test.picture_of(&same),
+        test.picture_of(&aside),
+    );
     assert!(a == b, "two cameras in one place differ");
     assert!(a != c, "a camera elsewhere shows something else");
 
     // A camera a little aside sees the same drops, but for the rim of its view.
     let camera = test.camera;
-    let (one, two, other) = (drops(&mut test, camera), drops(&mut test, second), drops(&mut test, third));
+    let (one, two, other) = (
+        drops(&mut test, camera),
+        drops(&mut test, second),
+        drops(&mut test, third),
+    );
     assert!(one.len() > 5_000, "{} drops", one.len());
     assert_eq!(one, two);
     let common = shared(&one, &other);
-    assert!(common * 10 > one.len() * 7, "{common} of {} drops are common", one.len());
+    assert!(
+        common * 10 > one.len() * 7,
+        "{common} of {} drops are common",
+        one.len()
+    );
     // Another instant has other drops: sharing is not automatic.
     test.frames(1, FRAME);
     let later = drops(&mut test, camera);
-    assert!(shared(&one, &later) * 10 < one.len(), "{} of {}", shared(&one, &later), one.len());
+    assert!(
+        shared(&one, &later) * 10 < one.len(),
+        "{} of {}",
+        shared(&one, &later),
+        one.len()
+    );
 }

@@ -35,6 +35,13 @@ fn wet_albedo_is_the_table_of_lekner_and_dorf_and_a_half_dark_formula_is_found()
     // The table has five digits.
     assert!(off(&found) < 2e-5, "{found:?}");
     // The ends: white loses the surface's reflection alone, black stays black.
-    assert!(found.iter().all(|f| (f[1] - 0.979_627).abs() < 1e-5 && f[2].abs() < 1e-6));
-    assert!(off(&run("0.5 * ")) > 0.01, "half of the dry albedo passes for the formula");
+    assert!(
+        found
+            .iter()
+            .all(|f| (f[1] - 0.979_627).abs() < 1e-5 && f[2].abs() < 1e-6)
+    );
+    assert!(
+        off(&run("0.5 * ")) > 0.01,
+        "half of the dry albedo passes for the formula"
+    );
 }

@@ -42,7 +42,10 @@ pub fn crossings(profile: &[(f64, f64)], level: f64) -> Vec<f64> {
 /// reach from all wet to all dry, in either order.
 pub fn mean_border(profile: &[(f64, f64)], open: f64) -> f64 {
     let (first, last) = (profile[0], profile[profile.len() - 1]);
-    let wet: f64 = profile.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) / open * (w[1].0 - w[0].0)).sum();
+    let wet: f64 = profile
+        .windows(2)
+        .map(|w| 0.5 * (w[0].1 + w[1].1) / open * (w[1].0 - w[0].0))
+        .sum();
     if first.1 > last.1 { first.0 + wet } else { last.0 - wet }
 }
 

@@ -38,7 +38,10 @@ fn the_same_scenario_twice_gives_the_same_hash_and_the_same_masks() {
     let (first, second, other) = (run(5), run(5), run(6));
     assert_eq!(first.0, second.0, "state hash");
     assert!(first.1 == second.1, "masks differ");
-    assert!(first.1.len() == 3 && first.1[0].1.iter().any(|t| *t > 0), "the masks show rain");
+    assert!(
+        first.1.len() == 3 && first.1[0].1.iter().any(|t| *t > 0),
+        "the masks show rain"
+    );
     // Another seed is another run: other drops, though the same weather.
     assert_ne!(first.0, other.0, "state hash of another seed");
     assert!(first.1[0] != other.1[0], "the rain mask of another seed");

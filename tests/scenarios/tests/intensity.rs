@@ -47,7 +47,10 @@ fn rain_pixels_and_drops_rise_with_intensity_at_equal_quality() {
         assert!(drops[i] > 1.2 * drops[i - 1] + 100.0, "drops {drops:?}");
     }
     let (ratio, expected) = (drops[3] / drops[2], NUMBER_50 / NUMBER_10);
-    assert!((ratio / expected - 1.0).abs() < 0.03, "{ratio}, the spectra say {expected}");
+    assert!(
+        (ratio / expected - 1.0).abs() < 0.03,
+        "{ratio}, the spectra say {expected}"
+    );
 }
 
 #[test]

@@ -63,10 +63,24 @@ fn a_moving_slab_keeps_rain_and_wet_off_exactly_where_it_is_in_every_capture() {
         let from_slab = |p: bevy::math::DVec3| (p.x - x).abs().max(p.z.abs());
         let under = shot.where_surface(|p| p.y < 0.02 && from_slab(p) < HALF - 0.2);
         let beside = shot.where_surface(|p| p.y < 0.02 && from_slab(p) > HALF + 0.3);
-        assert!(under.len() > 2000 && beside.len() > 1000, "{} under, {} beside", under.len(), beside.len());
+        assert!(
+            under.len() > 2000 && beside.len() > 1000,
+            "{} under, {} beside",
+            under.len(),
+            beside.len()
+        );
         assert_eq!(raining(&under), 0, "capture {i}: streaks under the slab");
-        assert_eq!(under.iter().filter(|p| p.wet > 0.0).count(), 0, "capture {i}: wet under the slab");
-        assert!(raining(&beside) * 5 > beside.len(), "capture {i}: {} of {}", raining(&beside), beside.len());
+        assert_eq!(
+            under.iter().filter(|p| p.wet > 0.0).count(),
+            0,
+            "capture {i}: wet under the slab"
+        );
+        assert!(
+            raining(&beside) * 5 > beside.len(),
+            "capture {i}: {} of {}",
+            raining(&beside),
+            beside.len()
+        );
         assert!(mean(&beside, |p| p.wet) > 0.95, "capture {i}");
     }
 }

@@ -52,7 +52,10 @@ fn real_roads_get_wet_but_not_under_a_real_truck_while_it_drives() {
         scale: 1.6,
         path: [start - 2.0, start + 2.0]
             .into_iter()
-            .map(|time_s| PathKey { time_s, position: place(time_s) })
+            .map(|time_s| PathKey {
+                time_s,
+                position: place(time_s),
+            })
             .collect(),
         wheel_radius_m: 0.48,
         ..Vehicle::default()
@@ -80,16 +83,26 @@ fn real_roads_get_wet_but_not_under_a_real_truck_while_it_drives() {
         let road = |p: DVec3| p.y < low.y + 0.05 && p.z.abs() < 2.5;
         let inset = 0.35;
         let under = shot.where_surface(|p| {
-            road(p)
-                && p.x > low.x + inset
-                && p.x < high.x - inset
-                && p.z > low.z + inset
-                && p.z < high.z - inset
+            road(p) && p.x > low.x + inset && p.x < high.x - inset && p.z > low.z + inset && p.z < high.z - inset
         });
         let beside = shot.where_surface(|p| road(p) && (p.x < low.x - 0.5 || p.x > high.x + 0.5));
-        assert!(under.len() > 20 && beside.len() > 500, "{} under, {} beside", under.len(), beside.len());
-        assert_eq!(under.iter().filter(|p| p.wet > 0.0).count(), 0, "capture {i}: of {} under the truck", under.len());
-        assert!(mean(&beside, |p| p.wet) > 0.9, "capture {i}: {}", mean(&beside, |p| p.wet));
+        assert!(
+            under.len() > 20 && beside.len() > 500,
+            "{} under, {} beside",
+            under.len(),
+            beside.len()
+        );
+        assert_eq!(
+            under.iter().filter(|p| p.wet > 0.0).count(),
+            0,
+            "capture {i}: of {} under the truck",
+            under.len()
+        );
+        assert!(
+            mean(&beside, |p| p.wet) > 0.9,
+            "capture {i}: {}",
+            mean(&beside, |p| p.wet)
+        );
         assert!(raining(&beside) > 0, "capture {i}: no streak");
     }
 }

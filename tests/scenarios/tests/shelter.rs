@@ -62,14 +62,22 @@ fn the_ground_is_dry_under_a_roof_and_wet_beside_it_with_a_soft_border() {
     let ground = strip(&plan.shoot(&mut session)[0]);
     let dry: Vec<Pixel> = ground.iter().copied().filter(|p| x(p) > edge + 0.3).collect();
     let wet: Vec<Pixel> = ground.iter().copied().filter(|p| x(p) < edge - 0.3).collect();
-    assert!(dry.len() > 500 && wet.len() > 500, "{} dry, {} wet", dry.len(), wet.len());
+    assert!(
+        dry.len() > 500 && wet.len() > 500,
+        "{} dry, {} wet",
+        dry.len(),
+        wet.len()
+    );
     assert_eq!(dry.iter().filter(|p| p.wet > 0.0).count(), 0);
     assert!(mean(&wet, |p| p.wet) > 0.95, "{}", mean(&wet, |p| p.wet));
     // Soft: values between, but not wider than the look-up's tent.
     let between: Vec<f64> = ground.iter().filter(|p| p.wet > 0.05 && p.wet < 0.9).map(x).collect();
     assert!(!between.is_empty(), "a hard border");
     for place in between {
-        assert!((place - edge).abs() < 3.0 * COVER_TEXEL_M, "half wet at {place}, edge {edge}");
+        assert!(
+            (place - edge).abs() < 3.0 * COVER_TEXEL_M,
+            "half wet at {place}, edge {edge}"
+        );
     }
 }
 

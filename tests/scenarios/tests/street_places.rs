@@ -3,9 +3,7 @@
 use rain_plugins::report::PassName;
 use rain_plugins::scenario::Session;
 use rain_plugins::scenario::file::{Attached, PathKey, ScenePart, Vehicle};
-use street::layout::{
-    ARCADE_CEILING_Y, ARCADE_DEPTH, ARCADE_Z, CAR_START, FACADE_X, SHELTER_X, SHELTER_Y, SHELTER_Z,
-};
+use street::layout::{ARCADE_CEILING_Y, ARCADE_DEPTH, ARCADE_Z, CAR_START, FACADE_X, SHELTER_X, SHELTER_Y, SHELTER_Z};
 use test_support::shots::{Pixel, Plan, View, mean, raining, steady};
 use test_support::{assets, gpu};
 
@@ -23,7 +21,11 @@ fn session(plan: &Plan) -> Session {
 }
 
 fn recorded(session: &Session) -> u64 {
-    session.passes().passes.get(&PassName::Rainfall).map_or(0, |p| p.recorded)
+    session
+        .passes()
+        .passes
+        .get(&PassName::Rainfall)
+        .map_or(0, |p| p.recorded)
 }
 
 #[test]
@@ -53,12 +55,28 @@ fn no_streak_in_the_arcade_streaks_over_the_street_and_no_pass_in_the_closed_roo
     for (view, share) in [(0, 0.9), (1, 0.5)] {
         let shot = plan.shot(&mut session, view);
         let pixels = shot.where_surface(inside);
-        assert!(pixels.len() as f64 > share * 160.0 * 90.0, "view {view}: {} pixels", pixels.len());
-        assert_eq!(raining(&pixels), 0, "view {view}: of {} pixels in the arcade", pixels.len());
+        assert!(
+            pixels.len() as f64 > share * 160.0 * 90.0,
+            "view {view}: {} pixels",
+            pixels.len()
+        );
+        assert_eq!(
+            raining(&pixels),
+            0,
+            "view {view}: of {} pixels in the arcade",
+            pixels.len()
+        );
     }
-    let street = plan.shot(&mut session, 2).where_surface(|p| p.x < f64::from(FACADE_X) - 1.0);
+    let street = plan
+        .shot(&mut session, 2)
+        .where_surface(|p| p.x < f64::from(FACADE_X) - 1.0);
     assert!(street.len() > 2000, "{} pixels show the street", street.len());
-    assert!(raining(&street) * 20 > street.len(), "{} of {}", raining(&street), street.len());
+    assert!(
+        raining(&street) * 20 > street.len(),
+        "{} of {}",
+        raining(&street),
+        street.len()
+    );
 
     // The closed room: what was recorded for the street's views does not grow.
     let before = recorded(&session);
@@ -105,13 +123,28 @@ fn wind_drives_rain_under_the_bus_shelter_by_height_times_wind_over_fall_speed()
             (nearest - expected).abs() < 2.0 * COVER_TEXEL_M,
             "wind {wind}: borders at {borders:?}, geometry says {expected}"
         );
-        let deep: Vec<Pixel> = pavement.iter().copied().filter(|p| x(p) < edge + 2.0 * (expected - edge) - 0.3).collect();
-        assert!(deep.len() > 100 && deep.iter().all(|p| p.wet == 0.0), "wind {wind}: wet deep in the shelter");
+        let deep: Vec<Pixel> = pavement
+            .iter()
+            .copied()
+            .filter(|p| x(p) < edge + 2.0 * (expected - edge) - 0.3)
+            .collect();
+        assert!(
+            deep.len() > 100 && deep.iter().all(|p| p.wet == 0.0),
+            "wind {wind}: wet deep in the shelter"
+        );
         let out: Vec<Pixel> = pavement.iter().copied().filter(|p| x(p) > expected + 0.4).collect();
-        assert!(out.len() > 100 && mean(&out, |p| p.wet) > 0.9, "wind {wind}: {}", mean(&out, |p| p.wet));
+        assert!(
+            out.len() > 100 && mean(&out, |p| p.wet) > 0.9,
+            "wind {wind}: {}",
+            mean(&out, |p| p.wet)
+        );
         found.push(nearest);
     }
-    assert!(found[0] - found[1] > 0.5, "wind moved the border by {} m", found[0] - found[1]);
+    assert!(
+        found[0] - found[1] > 0.5,
+        "wind moved the border by {} m",
+        found[0] - found[1]
+    );
 }
 
 #[test]
@@ -128,8 +161,11 @@ fn no_streak_and_no_wet_under_the_driving_car_in_any_capture_and_both_beside_it(
     let (eye, target) = ([0.0, 0.11, -1.0], [0.0, 0.06, 2.0]);
     let view = |time_s: f64| {
         let at = bevy::math::DVec3::from_array(place(time_s));
-        View::new((at + bevy::math::DVec3::from_array(eye)).to_array(), (at + bevy::math::DVec3::from_array(target)).to_array())
-            .fov(70.0)
+        View::new(
+            (at + bevy::math::DVec3::from_array(eye)).to_array(),
+            (at + bevy::math::DVec3::from_array(target)).to_array(),
+        )
+        .fov(70.0)
     };
     let mut plan = plan([0.0; 3], start, &[view(start); 3]);
     plan.scenario.vehicles = vec![Vehicle {
@@ -137,7 +173,10 @@ fn no_streak_and_no_wet_under_the_driving_car_in_any_capture_and_both_beside_it(
         file: street::CAR_FILE.into(),
         path: [start - 1.0, start + 3.0]
             .into_iter()
-            .map(|time_s| PathKey { time_s, position: place(time_s) })
+            .map(|time_s| PathKey {
+                time_s,
+                position: place(time_s),
+            })
             .collect(),
         wheel_radius_m: f64::from(street::car::WHEEL_RADIUS),
         ..Vehicle::default()
@@ -158,10 +197,23 @@ fn no_streak_and_no_wet_under_the_driving_car_in_any_capture_and_both_beside_it(
         let road = |p: bevy::math::DVec3| (p.y - f64::from(layout.ground_height(p.x as f32, p.z as f32))).abs() < 0.03;
         let under = shot.where_surface(|p| road(p) && (p.x - x).abs() < 0.55 && p.z - z < 1.6);
         let beside = shot.where_surface(|p| road(p) && p.z - z > 3.0 && p.x.abs() < 3.0);
-        assert!(under.len() > 500 && beside.len() > 200, "{} under, {} beside", under.len(), beside.len());
+        assert!(
+            under.len() > 500 && beside.len() > 200,
+            "{} under, {} beside",
+            under.len(),
+            beside.len()
+        );
         assert_eq!(raining(&under), 0, "capture {i}: streaks under the car");
-        assert_eq!(under.iter().filter(|p| p.wet > 0.0).count(), 0, "capture {i}: wet under the car");
+        assert_eq!(
+            under.iter().filter(|p| p.wet > 0.0).count(),
+            0,
+            "capture {i}: wet under the car"
+        );
         assert!(raining(&beside) > 0, "capture {i}: no streak before the car");
-        assert!(mean(&beside, |p| p.wet) > 0.8, "capture {i}: {}", mean(&beside, |p| p.wet));
+        assert!(
+            mean(&beside, |p| p.wet) > 0.8,
+            "capture {i}: {}",
+            mean(&beside, |p| p.wet)
+        );
     }
 }

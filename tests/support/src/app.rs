@@ -50,6 +50,8 @@ impl TestApp {
         }
         headless::finish(&mut app);
         app.init_resource::<Pictured>();
+        // Nothing here runs in `FixedUpdate`; at its default step a leap of an hour is 230 000 empty runs.
+        app.insert_resource(Time::<Fixed>::from_seconds(3600.0));
         app.insert_resource(GlobalAmbientLight {
             brightness: 400.0,
             ..default()
@@ -114,7 +116,11 @@ impl TestApp {
     /// Moves the camera.
     pub fn look(&mut self, eye: Vec3, target: Vec3) {
         let camera = self.camera;
-        let up = if (target - eye).normalize_or_zero().y.abs() > 0.99 { Vec3::NEG_Z } else { Vec3::Y };
+        let up = if (target - eye).normalize_or_zero().y.abs() > 0.99 {
+            Vec3::NEG_Z
+        } else {
+            Vec3::Y
+        };
         self.world()
             .entity_mut(camera)
             .insert(Transform::from_translation(eye).looking_at(target, up));

@@ -34,6 +34,10 @@ pub fn real_models() -> Option<PathBuf> {
     // Tests run in their package's folder; a relative path is meant from the repository.
     let from_repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(&folder);
     let found = [folder.clone(), from_repository].into_iter().find(|f| f.is_dir());
-    assert!(found.is_some(), "RAIN_ASSETS is {}, which is no folder", folder.display());
+    assert!(
+        found.is_some(),
+        "RAIN_ASSETS is {}, which is no folder",
+        folder.display()
+    );
     found
 }

@@ -14,7 +14,9 @@ pub const MAX_BYTES: u64 = 20 << 10;
 /// When the sizes differ.
 #[must_use]
 pub fn likeness(a: &RgbImage, b: &RgbImage) -> f64 {
-    image_compare::rgb_hybrid_compare(a, b).expect("two pictures of one size").score
+    image_compare::rgb_hybrid_compare(a, b)
+        .expect("two pictures of one size")
+        .score
 }
 
 /// Compares `picture` with the golden of this name in `folder`; below `bound` it is written to `target/goldens/` and the
@@ -37,7 +39,11 @@ pub fn check(folder: &Path, name: &str, picture: &RgbImage, bound: f64) {
         eprintln!("created {}: look at it before it is committed", path.display());
     }
     let bytes = std::fs::metadata(&path).expect("the golden").len();
-    assert!(bytes <= MAX_BYTES, "{}: {bytes} bytes, at most {MAX_BYTES}", path.display());
+    assert!(
+        bytes <= MAX_BYTES,
+        "{}: {bytes} bytes, at most {MAX_BYTES}",
+        path.display()
+    );
     let golden = image::open(&path).expect("the golden is a picture").to_rgb8();
     assert_eq!(golden.dimensions(), picture.dimensions(), "{name}");
     let score = likeness(&golden, picture);
@@ -57,5 +63,9 @@ fn keep(name: &str, picture: &RgbImage) -> PathBuf {
         .join("goldens");
     let path = folder.join(format!("{name}.png"));
     let written = std::fs::create_dir_all(&folder).is_ok() && picture.save(&path).is_ok();
-    if written { path } else { PathBuf::from("not kept: the folder cannot be written") }
+    if written {
+        path
+    } else {
+        PathBuf::from("not kept: the folder cannot be written")
+    }
 }

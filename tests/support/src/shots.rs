@@ -67,7 +67,11 @@ impl Plan {
     #[must_use]
     pub fn new(weather: weather::Weather, start_s: f64, views: &[View]) -> Self {
         let keys = views.iter().enumerate().map(|(i, view)| CameraKey {
-            time_s: if i == 0 { 0.0 } else { start_s + (i as f64 - 0.5) * VIEW_STEP_S },
+            time_s: if i == 0 {
+                0.0
+            } else {
+                start_s + (i as f64 - 0.5) * VIEW_STEP_S
+            },
             eye: view.eye.to_array(),
             target: view.target.to_array(),
             fov_y_deg: view.fov_y_deg,
@@ -169,7 +173,11 @@ impl Shot {
     pub fn pixels(&self) -> Vec<Pixel> {
         let [width, height] = self.size;
         let forward = (self.view.target - self.view.eye).normalize();
-        let up = if forward.y.abs() > 0.999 { DVec3::NEG_Z } else { DVec3::Y };
+        let up = if forward.y.abs() > 0.999 {
+            DVec3::NEG_Z
+        } else {
+            DVec3::Y
+        };
         let right = forward.cross(up).normalize();
         let up = right.cross(forward);
         let tan = (0.5 * self.view.fov_y_deg.to_radians()).tan();

@@ -16,13 +16,7 @@ pub fn block(world: &mut World, name: &str, low: Vec3, high: Vec3, reflectance: 
 }
 
 /// Like [`block`], of a material that the test made.
-pub fn block_of(
-    world: &mut World,
-    name: &str,
-    low: Vec3,
-    high: Vec3,
-    material: Handle<StandardMaterial>,
-) -> Entity {
+pub fn block_of(world: &mut World, name: &str, low: Vec3, high: Vec3, material: Handle<StandardMaterial>) -> Entity {
     let size = high - low;
     let mesh = world
         .resource_mut::<Assets<Mesh>>()
@@ -70,9 +64,8 @@ pub fn roof(world: &mut World) -> Entity {
 /// one at low z first (a camera that looks along −Z faces it).
 pub fn room(world: &mut World) -> [Entity; 4] {
     let (a, b, h) = (3.0, 3.3, 3.0);
-    let mut wall = |name: &str, low: [f32; 3], high: [f32; 3]| {
-        block(world, name, Vec3::from(low), Vec3::from(high), STONE)
-    };
+    let mut wall =
+        |name: &str, low: [f32; 3], high: [f32; 3]| block(world, name, Vec3::from(low), Vec3::from(high), STONE);
     wall("floor", [-b, 0.0, -b], [b, 0.05, b]);
     wall("ceiling", [-b, h, -b], [b, h + 0.3, b]);
     [
