@@ -32,8 +32,9 @@ pub(super) struct RainGpu {
 impl FromWorld for RainGpu {
     fn from_world(world: &mut World) -> Self {
         // On a new device the kept map is empty: it has to be drawn again.
-        if let Some(scene) = world.get_resource::<ExtractedRainScene>() {
-            scene.complete.store(false, Relaxed);
+        let scene = world.get_resource::<ExtractedRainScene>();
+        if let Some(cover) = scene.and_then(|s| s.cover.as_ref()) {
+            cover.complete.store(false, Relaxed);
         }
         let device = world.resource::<RenderDevice>().wgpu_device();
         Self {

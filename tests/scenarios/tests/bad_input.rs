@@ -67,7 +67,8 @@ fn leftovers(out: &Path) -> Vec<String> {
 }
 
 /// A scenario that runs, small and short.
-const GOOD: &str = "(duration_s: 2, captures: Times([1]), outputs: (size: (16, 9), contact_sheet: false, timeline: false))";
+const GOOD: &str =
+    "(duration_s: 2, captures: Times([1]), outputs: (size: (16, 9), contact_sheet: false, timeline: false))";
 
 #[test]
 fn good_input_leaves_a_report() {
@@ -80,7 +81,11 @@ fn good_input_leaves_a_report() {
     left.sort();
     assert_eq!(left, ["frame_0000.png", "report.json"]);
     // A later run that fails takes the report of the earlier one with it: nothing that looks whole is left.
-    std::fs::write(input.scenario(), GOOD.replace("duration_s: 2", "duration_s: 2, scene: \"gone.glb\"")).expect("a file");
+    std::fs::write(
+        input.scenario(),
+        GOOD.replace("duration_s: 2", "duration_s: 2, scene: \"gone.glb\""),
+    )
+    .expect("a file");
     assert_eq!(input.run(|_| {}).map_err(|e| e.exit_code()), Err(2));
     assert_eq!(leftovers(&input.out()), Vec::<String>::new());
 }
@@ -97,17 +102,38 @@ fn numbers_out_of_range_are_refused_with_field_value_and_place() {
     for (text, words) in [
         ("(\n  duration_s: NaN,\n)", ["scenario.ron:2:", "duration_s", "NaN"]),
         ("(\n  duration_s: -5,\n)", ["scenario.ron:2:", "duration_s", "-5"]),
-        ("(\n\n  rain: (exposure_s: inf),\n)", ["scenario.ron:3:", "rain.exposure_s", "inf"]),
-        ("(\n  weather: (keys: [(time_s: 0, intensity_mm_h: -1)]),\n)", ["scenario.ron:2:", "intensity_mm_h", "-1"]),
-        ("(\n  outputs: (size: (0, 0)),\n)", ["scenario.ron:2:", "outputs.size", "0"]),
-        ("(\n  outputs: (size: (99999, 9)),\n)", ["scenario.ron:2:", "outputs.size", "99999"]),
-        ("(\n  rain: (streak_budget: 4000001),\n)", ["scenario.ron:2:", "streak_budget", "4000001"]),
+        (
+            "(\n\n  rain: (exposure_s: inf),\n)",
+            ["scenario.ron:3:", "rain.exposure_s", "inf"],
+        ),
+        (
+            "(\n  weather: (keys: [(time_s: 0, intensity_mm_h: -1)]),\n)",
+            ["scenario.ron:2:", "intensity_mm_h", "-1"],
+        ),
+        (
+            "(\n  outputs: (size: (0, 0)),\n)",
+            ["scenario.ron:2:", "outputs.size", "0"],
+        ),
+        (
+            "(\n  outputs: (size: (99999, 9)),\n)",
+            ["scenario.ron:2:", "outputs.size", "99999"],
+        ),
+        (
+            "(\n  rain: (streak_budget: 4000001),\n)",
+            ["scenario.ron:2:", "streak_budget", "4000001"],
+        ),
         (
             "(\n  captures: Even(start_s: 0, end_s: 1, count: 4000000000),\n)",
             ["scenario.ron:2:", "captures", "4000000000"],
         ),
-        ("(\n  warm_up_frames: 4000000,\n)", ["scenario.ron:2:", "warm_up_frames", "4000000"]),
-        ("(\n  captures: Times([1e300]),\n)", ["scenario.ron:2:", "captures", "1000000"]),
+        (
+            "(\n  warm_up_frames: 4000000,\n)",
+            ["scenario.ron:2:", "warm_up_frames", "4000000"],
+        ),
+        (
+            "(\n  captures: Times([1e300]),\n)",
+            ["scenario.ron:2:", "captures", "1000000"],
+        ),
     ] {
         Input::new(text).refused(&words);
     }
@@ -130,7 +156,9 @@ fn missing_and_broken_models_are_refused_by_name() {
     let text = GOOD.replacen('(', "(scene: \"model.glb\", ", 1);
     Input::new(&text).refused(&["model.glb"]);
     Input::new(&text).file("model.glb", b"").refused(&["model.glb"]);
-    Input::new(&text).file("model.glb", b"not a model at all").refused(&["model.glb", "glTF"]);
+    Input::new(&text)
+        .file("model.glb", b"not a model at all")
+        .refused(&["model.glb", "glTF"]);
     // A real file, cut in its middle.
     let (folder, _) = assets::street_folder();
     let whole = std::fs::read(folder.join(street::CAR_FILE)).expect("the car");
@@ -166,7 +194,11 @@ fn program() -> PathBuf {
     let test = std::env::current_exe().expect("this program");
     let debug = test.ancestors().nth(2).expect("target/debug/deps/…");
     let program = debug.join(format!("rain{}", std::env::consts::EXE_SUFFIX));
-    assert!(program.is_file(), "{} is not built: test the whole workspace", program.display());
+    assert!(
+        program.is_file(),
+        "{} is not built: test the whole workspace",
+        program.display()
+    );
     program
 }
 
@@ -174,7 +206,12 @@ fn program() -> PathBuf {
 fn the_program_exits_with_2_on_bad_input_and_3_without_a_graphics_device_and_leaves_no_report() {
     let run = |input: &Input, no_driver: bool| {
         let mut command = Command::new(program());
-        command.arg("run").arg(input.scenario()).arg("--out").arg(input.out()).arg("--json");
+        command
+            .arg("run")
+            .arg(input.scenario())
+            .arg("--out")
+            .arg(input.out())
+            .arg("--json");
         if no_driver {
             // No Vulkan driver and nothing to fall back to.
             for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
@@ -195,13 +232,21 @@ fn the_program_exits_with_2_on_bad_input_and_3_without_a_graphics_device_and_lea
     let output = run(&bad, false);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.contains("scenario.ron:2:") && message.contains("duration_s"), "{message}");
+    assert!(
+        message.contains("scenario.ron:2:") && message.contains("duration_s"),
+        "{message}"
+    );
     assert!(output.stdout.is_empty() && leftovers(&bad.out()).is_empty());
 
     // The same good input with the device that is here.
     if gpu::available() {
         let output = run(&without_device, false);
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON on stdout");
         assert_eq!(report["frames"], 1);
         assert!(without_device.out().join("report.json").is_file());
