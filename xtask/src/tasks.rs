@@ -152,6 +152,8 @@ pub fn test() -> Result<(), u8> {
         eprintln!("xtask: real models from {}", assets.display());
         tests.env("RAIN_ASSETS", &assets);
     }
+    // A test starts the `rain` program, which `cargo test` alone would not build.
+    steps.run("programs", cargo(&root, "build").args(WORKSPACE).arg("--bins"))?;
     steps.run("tests", drawing(&mut tests, &target))?;
     steps.run("doc tests", drawing(&mut doc_tests, &target))
 }

@@ -35,6 +35,21 @@ pub(super) struct Surroundings {
     moving: BTreeSet<u64>,
 }
 
+type ChangedSurface = (
+    With<Mesh3d>,
+    Or<(Changed<GlobalTransform>, Changed<Mesh3d>, Changed<InheritedVisibility>)>,
+);
+
+impl Surroundings {
+    /// Whether the fall direction has left that of the surfaces.
+    fn turned(&self, field: &RainfallField) -> bool {
+        let Some(cover) = &self.cover else { return true };
+        let wind = field.wind_m_s();
+        FallSlope::new(DVec2::new(wind.x, wind.z), field.mean_inverse_velocity_s_m())
+            .is_ok_and(|slope| cover.slope().angle_to(&slope) > std::f64::consts::PI / 180.0)
+    }
+}
+
 /// A flood stays valid while the eye is this close to where it started. Units: cells.
 const SAME_PLACE: i32 = 8;
 
@@ -54,7 +69,10 @@ pub(super) fn judge_air(
     materials: Res<Assets<StandardMaterial>>,
     views: Query<(Entity, &GlobalTransform, &Camera), With<RainView>>,
     surfaces: Query<Surface>,
+    changed: Query<(), ChangedSurface>,
+    mut removed: RemovedComponents<Mesh3d>,
 ) {
+    let gone = removed.read().count() > 0;
     judged.closed_in = None;
     if !field.is_raining() {
         surroundings.stale = true;
@@ -65,7 +83,10 @@ pub(super) fn judge_air(
     };
     let eye = at.translation().as_dvec3();
     let s = &mut *surroundings;
-    take_in(s, &field, &meshes, &materials, &surfaces);
+    // In a still scene no mesh is looked at twice.
+    if s.stale || gone || !s.moving.is_empty() || !changed.is_empty() || s.turned(&field) {
+        take_in(s, &field, &meshes, &materials, &surfaces);
+    }
     let Some(cover) = &s.cover else { return };
     let cell = cell_of(eye);
     let same_place = (cell - s.start).abs().max_element() <= SAME_PLACE;
@@ -110,21 +131,32 @@ fn take_in(
         changed = true;
     }
     let mut present = BTreeSet::new();
+    let mut unresolved = false;
     for (entity, transform, mesh, visible, original) in surfaces {
         let owner = entity.to_bits();
-        let opaque = original
-            .handle()
-            .and_then(|h| materials.get(h))
+        let material = original.handle().map(|h| materials.get(h));
+        // A material still being loaded is asked for again.
+        unresolved |= matches!(material, Some(None));
+        let opaque = material
+            .flatten()
             .is_some_and(|m| matches!(m.alpha_mode, AlphaMode::Opaque | AlphaMode::Mask(_)));
         if !opaque || !visible.get() {
             continue;
         }
         present.insert(owner);
         let known = s.owners.contains(&owner);
-        let moved = known && (transform.is_changed() || mesh.is_changed());
-        if moved {
+        let seen = known || s.moving.contains(&owner);
+        if seen && (transform.is_changed() || mesh.is_changed()) {
             s.moving.insert(owner);
-        } else if s.moving.remove(&owner) || (!known) {
+            if known {
+                s.air.remove(owner);
+                let _ = cover.remove(OccluderId(owner));
+                s.owners.remove(&owner);
+                changed = true;
+            }
+            continue;
+        }
+        if s.moving.remove(&owner) || !known {
             let Some(triangles) = meshes.get(&mesh.0).and_then(|m| triangles_of(m, &transform)) else {
                 // No data on the CPU: it can neither cover nor close here, so the air counts as open.
                 present.remove(&owner);
@@ -141,13 +173,6 @@ fn take_in(
                 s.owners.insert(owner);
                 changed = true;
             }
-            continue;
-        }
-        if moved {
-            s.air.remove(owner);
-            let _ = cover.remove(OccluderId(owner));
-            s.owners.remove(&owner);
-            changed = true;
         }
     }
     let gone: Vec<u64> = s.owners.difference(&present).copied().collect();
@@ -157,7 +182,7 @@ fn take_in(
         s.owners.remove(&owner);
         changed = true;
     }
-    s.stale = false;
+    s.stale = unresolved;
     if changed {
         cover.update();
         s.flooded = None;

@@ -87,7 +87,7 @@ impl Plugin for CoverPlugin {
             .add_systems(Startup, create_map)
             .add_systems(
                 PostUpdate,
-                (spawn_view, watch_occluders, aim_view, judge_air)
+                (spawn_view, watch_occluders.run_if(map_is_wanted), aim_view, judge_air)
                     .chain()
                     .in_set(RainViewSystems::Cover),
             )
@@ -155,6 +155,11 @@ type Occluder = (
     &'static Aabb,
     Ref<'static, InheritedVisibility>,
 );
+
+/// Something falls or is wet: while the scene is dry, meshes are not looked at.
+fn map_is_wanted(field: Res<RainfallField>, surface: Option<Res<SurfaceState>>) -> bool {
+    field.is_raining() || surface.is_some_and(|s| s.wet)
+}
 
 /// Notes whether anything that covers near the view has moved, appeared, vanished or changed.
 fn watch_occluders(
@@ -234,6 +239,8 @@ fn aim_view(
     };
     if let Some(reason) = reason {
         report.skipped(PassName::Cover, reason);
+        // Nobody watches meanwhile: whatever happens counts as a change.
+        watch.changed = true;
         return;
     }
     let eye = view.unwrap_or_default();

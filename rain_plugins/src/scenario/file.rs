@@ -468,14 +468,14 @@ impl Captures {
         }
     }
 
-    /// `count` captures spread evenly from the first of these to the last (`rain run --frames`); with none here, over
-    /// the whole duration.
+    /// `count` captures spread evenly from the first of these to the last (`rain run --frames`); with fewer than two
+    /// here, from there (or the start) to the end of the duration.
     #[must_use]
     pub fn resampled(&self, count: u32, duration_s: f64) -> Self {
         let times = self.times_s();
         Self::Even {
             start_s: times.first().copied().unwrap_or(0.0),
-            end_s: times.last().copied().unwrap_or(duration_s),
+            end_s: times.last().copied().filter(|_| times.len() > 1).unwrap_or(duration_s),
             count,
         }
     }

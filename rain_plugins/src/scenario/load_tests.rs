@@ -151,6 +151,7 @@ fn defaults_and_short_forms() {
     assert_eq!(s.captures, Captures::Times(vec![1.0, 2.5]));
     assert_eq!(s.captures.resampled(3, 600.0).times_s(), [1.0, 1.75, 2.5]);
     assert_eq!(Captures::default().resampled(2, 600.0).times_s(), [0.0, 600.0]);
+    assert_eq!(Captures::Times(vec![5.0]).resampled(2, 600.0).times_s(), [5.0, 600.0]);
     assert_eq!(
         Captures::Even {
             start_s: 5.0,

@@ -31,6 +31,9 @@ pub enum RunError {
         /// What is wrong with it.
         message: String,
     },
+    /// The scenario does not fit the settings given beside it.
+    #[error("with the settings given beside the scenario, {0}")]
+    Options(String),
     /// Results cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -244,12 +247,9 @@ fn apply(scenario: &mut Scenario, options: &RunOptions) -> Result<(), RunError> 
     if let Some(seed) = options.seed {
         scenario.seed = seed;
     }
-    scenario.validate().map_err(|problem| RunError::Setting {
-        field: "scenario",
-        value: problem.to_string(),
-        allowed: "see the field's documentation",
-    })?;
-    Ok(())
+    scenario
+        .validate()
+        .map_err(|problem| RunError::Options(problem.to_string()))
 }
 
 /// Samples the weather along the way.

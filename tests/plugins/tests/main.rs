@@ -4,6 +4,7 @@ mod cover_parity;
 mod device;
 mod device_loss;
 mod field_parity;
+mod groups;
 mod hash_parity;
 mod materials;
 mod optical_depth;

@@ -16,7 +16,7 @@ fn folder() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/goldens"))
 }
 
-/// The street from one of its places, 160 × 90.
+/// The street from one of its places, 128 × 72.
 fn street(view: &str, intensity_mm_h: f64, seconds: f64) -> RgbImage {
     let (files, layout) = assets::street_folder();
     let view = layout.view(view).expect("a place on the street");
@@ -25,6 +25,7 @@ fn street(view: &str, intensity_mm_h: f64, seconds: f64) -> RgbImage {
     let scenario = Scenario {
         scene: vec![ScenePart::from_file(street::STREET_FILE)],
         outputs: Outputs {
+            size: [128, 72],
             masks: Vec::new(),
             ..plan.scenario.outputs.clone()
         },

@@ -121,9 +121,10 @@ fn wind_moves_the_dry_patch_by_height_times_wind_over_fall_speed() {
                 found[0],
                 median_at[i]
             );
+            // The look-up softens over a texel more, and not the same on both sides.
             let mean = mean_border(&profile, open);
             assert!(
-                (mean - mean_at[i]).abs() < 2.0 * COVER_TEXEL_M,
+                (mean - mean_at[i]).abs() < 3.0 * COVER_TEXEL_M,
                 "wind {wind} m/s, side {i}: mean border at {mean} m, geometry says {} m",
                 mean_at[i]
             );

@@ -1,0 +1,76 @@
+//! Plugins alone, left out of the group, and without a renderer.
+
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use rain_plugins::prelude::*;
+use rain_plugins::scenario::headless;
+use test_support::app::{FRAME, spawn_camera, target_image};
+use test_support::{gpu, world};
+
+const SIZE: [u32; 2] = [96, 54];
+
+#[test]
+fn a_server_without_a_renderer_simulates_the_weather() {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, RainPlugins));
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
+    app.world_mut().spawn(Weather::rain(25.0));
+    for _ in 0..120 {
+        app.update();
+    }
+    assert_eq!(
+        *app.world().resource::<RainRenderStatus>(),
+        RainRenderStatus::NoRenderer
+    );
+    assert!(app.world().resource::<RainfallField>().is_raining());
+    let fallen = app
+        .world_mut()
+        .query::<&WeatherState>()
+        .single(app.world())
+        .expect("one weather")
+        .rain_mm();
+    // Two seconds, up to a tick, of 25 mm/h.
+    assert!((fallen - 25.0 / 1800.0).abs() < 25.0 / 3600.0 / 16.0, "{fallen} mm");
+}
+
+/// Rain passes recorded in three frames of an app with these plugins, and cover passes.
+fn recorded(plugins: impl FnOnce(&mut App)) -> (u64, u64) {
+    let mut app = App::new();
+    app.add_plugins(headless::plugins());
+    plugins(&mut app);
+    headless::finish(&mut app);
+    let target = target_image(&mut app, SIZE);
+    spawn_camera(&mut app, &target, true);
+    world::ground(app.world_mut());
+    app.world_mut().spawn(Weather::rain(25.0));
+    for _ in 0..12 {
+        headless::step(&mut app, FRAME).expect("the renderer goes on");
+    }
+    let report = app.world().resource::<RainReport>();
+    (
+        report.recorded_frames(PassName::Rainfall),
+        report.recorded_frames(PassName::Cover),
+    )
+}
+
+#[test]
+fn it_rains_without_wet_surfaces_and_without_cover() {
+    if !gpu::available() {
+        return;
+    }
+    let (rain, cover) = recorded(|app: &mut App| {
+        app.add_plugins(RainPlugins.build().disable::<WetSurfacePlugin>());
+    });
+    assert!(
+        rain > 5 && cover > 0,
+        "without wet surfaces: {rain} rain, {cover} cover"
+    );
+    let (rain, cover) = recorded(|app: &mut App| {
+        app.add_plugins(RainPlugins.build().disable::<CoverPlugin>());
+    });
+    assert!(rain > 5 && cover == 0, "without cover: {rain} rain, {cover} cover");
+    let (rain, cover) = recorded(|app: &mut App| {
+        app.add_plugins(RainPlugins.build().disable::<RainfallPlugin>());
+    });
+    assert!(rain == 0 && cover > 0, "without near rain: {rain} rain, {cover} cover");
+}
