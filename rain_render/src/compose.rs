@@ -43,11 +43,19 @@ macro_rules! passes {
 /// Every pass.
 pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask"];
 
+/// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
+/// shelters, awnings and canopies of filling stations are lower. Units: m.
+pub const BUILDING_HEIGHT_M: f64 = 5.0;
+
 /// Constants that shaders share with `rain_core`.
 #[must_use]
 pub fn constants() -> String {
     let mut out = String::new();
-    for (name, value) in [("RAIN_RANGE_CAP_M", RANGE_CAP_M), ("RAIN_FADE_END", FADE_END)] {
+    for (name, value) in [
+        ("RAIN_RANGE_CAP_M", RANGE_CAP_M),
+        ("RAIN_FADE_END", FADE_END),
+        ("RAIN_BUILDING_HEIGHT_M", BUILDING_HEIGHT_M),
+    ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }
     out

@@ -50,6 +50,7 @@ impl Plugin for WetMaterialPlugin {
     fn build(&self, app: &mut App) {
         embedded_asset!(app, "shaders/wet_surface.wgsl");
         let mut source = String::from("#define_import_path rain::surface\n");
+        source.push_str(&compose::constants());
         source.push_str(compose::TYPES);
         for library in compose::LIBRARIES {
             if ["cover", "wetness"].contains(&library.name) {

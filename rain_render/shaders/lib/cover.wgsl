@@ -41,6 +41,13 @@ fn rain_covered(map: texture_depth_2d, cover: CoverParams, p: vec3<f32>, inverse
     return false;
 }
 
+// Whether `p` lies so far below what its mean ray meets that this must be a building, solid down to its walls.
+//
+// The map holds tops only. Slow drops that pass outside a high roof would come in through the walls below it.
+fn rain_inside_building(map: texture_depth_2d, cover: CoverParams, p: vec3<f32>) -> bool {
+    return rain_cover_height(map, cover, rain_cover_project(cover, p)) > p.y + RAIN_BUILDING_HEIGHT_M;
+}
+
 // How far above a surface of this normal its own texels may lie, m: a filter two texels wide on a slope.
 fn rain_exposure_bias(cover: CoverParams, normal: vec3<f32>) -> f32 {
     let texel = 1.0 / (cover.inverse_extent * cover.texels);

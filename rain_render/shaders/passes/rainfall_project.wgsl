@@ -61,6 +61,7 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
     var tail = view.clip_from_eye_before * vec4<f32>(before, 1.0);
     let near = max(view.near, 0.02);
     if (weight <= 0.0 || (head.w < near && tail.w < near)
+        || rain_inside_building(cover_map, view.cover, p)
         || rain_covered(cover_map, view.cover, p, k.velocity.w)
         || rain_covered(cover_map, view.cover, before, k.velocity.w)) {
         streaks[id.x] = out;

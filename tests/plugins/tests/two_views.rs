@@ -52,7 +52,7 @@ fn two_cameras_both_draw_and_see_the_same_drops() {
     if let Some(mut place) = test.world().get_mut::<Transform>(third) {
         place.translation += shift.as_vec3();
     }
-    test.frames(70, FRAME);
+    test.frames(10, FRAME);
     test.reset();
     test.frames(2, FRAME);
     assert_eq!(test.recorded(PassName::Rainfall), 6, "three cameras, two frames");
