@@ -2,7 +2,8 @@
 //!
 //! The map is drawn by a depth-only camera of Bevy's own, so everything that is opaque or alpha-masked covers, moving
 //! things included. It is drawn again only when something that covers moved, appeared or changed, when the view leaves
-//! the map's margin, or when the fall direction turned by more than one degree; otherwise the kept copy is read.
+//! the map's margin, or when the fall direction turned by more than one degree; otherwise the kept copy is read. A map
+//! drawn while pipelines were still being compiled may lack meshes and is drawn again until they are ready.
 //!
 //! # Accuracy
 //! One texel is 59 mm of ground. Drops that slant otherwise than the mean are looked up from three starting heights;
