@@ -6,10 +6,18 @@
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with std"))]
 
+pub mod canopy;
 pub mod constants;
 pub mod cover;
 pub mod error;
 pub mod hash;
+pub mod haze;
 pub mod ops;
+pub mod optics;
+pub mod quadrature;
 pub mod rainfall;
+pub mod splash;
+pub mod surface;
+pub mod waves;
 pub mod weather;
+pub mod wheels;

@@ -39,7 +39,7 @@ fn is_rendering(name: &str) -> bool {
 
 /// What exists for tests and examples only.
 fn is_fixture(name: &str) -> bool {
-    matches!(name, "test_support" | "street")
+    matches!(name, "test_support" | "street" | "rain_reference")
 }
 
 /// The crates that users get.

@@ -1,0 +1,3 @@
+//! Error against time: what is measured, and how it is written and drawn.
+
+pub mod study;

@@ -1,0 +1,1 @@
+//! Trees: interception, storage, free throughfall, drip and stemflow.

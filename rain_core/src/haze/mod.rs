@@ -1,0 +1,1 @@
+//! Extinction, visibility and fog of rain: one optical depth, shared between drawn drops and haze.

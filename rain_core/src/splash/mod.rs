@@ -1,0 +1,1 @@
+//! What a drop does when it hits: splash threshold, crown, secondary drops.

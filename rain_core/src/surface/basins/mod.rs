@@ -1,0 +1,1 @@
+//! Puddles from geometry: depressions of a height field, their volume and level, overflow from one to the next.

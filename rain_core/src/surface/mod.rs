@@ -1,0 +1,3 @@
+//! Water on the ground: film, road film, infiltration, basins, and how wet surfaces look.
+
+pub mod basins;

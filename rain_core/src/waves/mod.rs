@@ -1,0 +1,1 @@
+//! Waves on shallow water: dispersion, damped wave equation, sources, borders.

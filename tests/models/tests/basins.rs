@@ -1,0 +1,1 @@
+//! Depressions of a height field, against the slow way.

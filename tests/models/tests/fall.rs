@@ -1,0 +1,1 @@
+//! Fall from rest and the response to wind.

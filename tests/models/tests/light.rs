@@ -1,0 +1,1 @@
+//! Fresnel reflection, refraction in a drop, extinction.

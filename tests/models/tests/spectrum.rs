@@ -1,0 +1,1 @@
+//! Drop-size distributions: bulk quantities by brute-force sums.

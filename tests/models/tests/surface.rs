@@ -1,0 +1,1 @@
+//! Film, infiltration, inlets and wet albedo.

@@ -1,0 +1,1 @@
+//! Depressions of a height field, the slow way.

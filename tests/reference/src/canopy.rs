@@ -1,0 +1,1 @@
+//! Canopy store and drips.

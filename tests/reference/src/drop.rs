@@ -1,0 +1,1 @@
+//! Shape and oscillation of a drop, and its streak.

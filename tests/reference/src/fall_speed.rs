@@ -1,0 +1,1 @@
+//! Terminal velocity: measurements, the sources' fits, Beard 1976.

@@ -1,0 +1,1 @@
+//! Splash thresholds and crowns.

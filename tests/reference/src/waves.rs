@@ -1,0 +1,1 @@
+//! Water waves: dispersion, discrete modes, open-water integrals.

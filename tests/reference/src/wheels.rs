@@ -1,0 +1,1 @@
+//! Water thrown by wheels, hydroplaning, swept sources.
