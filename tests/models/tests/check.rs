@@ -14,7 +14,11 @@ pub struct Worst {
 impl Worst {
     /// Compares relative to the reference, but to no less than `scale`.
     pub fn relative(&mut self, value: f64, reference: f64, scale: f64, place: impl FnOnce() -> String) {
-        self.absolute(value / reference.abs().max(scale), reference / reference.abs().max(scale), place);
+        self.absolute(
+            value / reference.abs().max(scale),
+            reference / reference.abs().max(scale),
+            place,
+        );
     }
 
     /// Compares absolutely. What is not a number counts as an infinite error.
@@ -32,7 +36,12 @@ impl Worst {
     #[track_caller]
     pub fn assert_below(&self, bound: f64, count: usize) {
         assert!(self.count >= count, "only {} comparisons", self.count);
-        assert!(self.error <= bound, "off by {:.3e} at {}, allowed {bound:.3e}", self.error, self.place);
+        assert!(
+            self.error <= bound,
+            "off by {:.3e} at {}, allowed {bound:.3e}",
+            self.error,
+            self.place
+        );
     }
 }
 

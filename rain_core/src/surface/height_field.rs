@@ -1,0 +1,1 @@
+//! Height fields: from triangles, images, tables and glTF files.
