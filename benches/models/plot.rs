@@ -66,9 +66,9 @@ pub fn draw(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
     }
     // Whole decades: a logarithmic axis that is shorter crowds its labels.
     let range = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = values.fold((f64::INFINITY, 0_f64), |(low, high), v| (low.min(v), high.max(v)));
         let (low, high) = ((low * 0.8).log10().floor(), (high * 1.25).log10().ceil());
-        (10f64.powf(low)..10f64.powf(high), (high - low) as usize)
+        (10_f64.powf(low)..10_f64.powf(high), (high - low) as usize)
     };
     let (x, x_decades) = range(&mut points.iter().map(|p| p.0));
     let (y, y_decades) = range(&mut points.iter().map(|p| p.1));
