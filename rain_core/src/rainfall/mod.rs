@@ -4,7 +4,7 @@ mod classes;
 mod container;
 mod field;
 mod spectrum;
-mod terminal_velocity;
+pub mod terminal_velocity;
 
 pub use classes::{CLASS_CELL_M, CLASS_COUNT, CLASS_EDGES_MM, CLASS_SPEEDS_M_S, SizeClass, visible_range_m};
 pub use container::{
@@ -13,4 +13,7 @@ pub use container::{
 };
 pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
 pub use spectrum::{Distribution, MAX_INTENSITY_MM_H, Spectrum};
-pub use terminal_velocity::{MAX_FITTED_DIAMETER_MM, density_factor, terminal_velocity};
+pub use terminal_velocity::{
+    BeardAir, FallLaw, MAX_FITTED_DIAMETER_MM, StandardAtmosphere, density_factor, gunn_kinzer, terminal_velocity,
+    terminal_velocity_f32,
+};
