@@ -139,9 +139,16 @@ mod tests {
         fn check<const N: usize>() {
             let rule = GaussLegendre::<N>::RULE;
             for degree in 0..2 * N as i32 {
-                let exact = if degree % 2 == 0 { 2.0 / f64::from(degree + 1) } else { 0.0 };
+                let exact = if degree % 2 == 0 {
+                    2.0 / f64::from(degree + 1)
+                } else {
+                    0.0
+                };
                 let sum: f64 = (0..N).map(|i| rule.weights[i] * rule.nodes[i].powi(degree)).sum();
-                assert!((sum - exact).abs() < 2e-15 * (1.0 + N as f64).sqrt(), "{N}, {degree}: {sum} {exact}");
+                assert!(
+                    (sum - exact).abs() < 2e-15 * (1.0 + N as f64).sqrt(),
+                    "{N}, {degree}: {sum} {exact}"
+                );
             }
             assert!(rule.nodes.windows(2).all(|pair| pair[0] < pair[1]));
         }

@@ -38,8 +38,10 @@ pub enum FallLaw {
 
 /// A name that no fall law has.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("no fall law is called `{name}`; there are default, reference, gunn-kinzer, beard, foote-du-toit, brandes, \
-         atlas, best, weber, atlas-ulbrich")]
+#[error(
+    "no fall law is called `{name}`; there are default, reference, gunn-kinzer, beard, foote-du-toit, brandes, \
+         atlas, best, weber, atlas-ulbrich"
+)]
 pub struct UnknownFallLaw {
     /// What was asked for.
     pub name: String,

@@ -7,9 +7,9 @@
 //! Each function's `Error:` gives its rms and largest distance from Gunn & Kinzer's 30 entries with D ≥ 0.5 mm.
 
 use super::MAX_FITTED_DIAMETER_MM;
+use super::air::{air_viscosity_pa_s, held};
 use crate::constants::{AIR_DENSITY, GRAVITY, WATER_DENSITY};
 use crate::ops;
-use super::air::{air_viscosity_pa_s, held};
 
 /// Largest drop that the laws without an upper end of their own accept. Units: mm.
 const LARGEST_MM: f64 = 7.0;

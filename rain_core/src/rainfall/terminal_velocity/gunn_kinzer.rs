@@ -88,8 +88,7 @@ pub fn gunn_kinzer(diameter_mm: f64) -> f64 {
     let h = d1 - d0;
     let t = (d - d0) / h;
     let s = 1.0 - t;
-    let v = s * s * ((1.0 + 2.0 * t) * v0 + t * h * SLOPES[i])
-        + t * t * ((1.0 + 2.0 * s) * v1 - s * h * SLOPES[i + 1]);
+    let v = s * s * ((1.0 + 2.0 * t) * v0 + t * h * SLOPES[i]) + t * t * ((1.0 + 2.0 * s) * v1 - s * h * SLOPES[i + 1]);
     // Rounding where the last pieces are all but flat.
     v.clamp(0.0, GUNN_KINZER[ROWS - 1].1)
 }

@@ -29,7 +29,11 @@ impl<const N: usize> SpeedTable<N> {
     /// `diameter_mm` in mm, held in [0, 6.4]; NaN counts as 0.
     #[must_use]
     pub fn speed_m_s(&self, diameter_mm: f32) -> f32 {
-        let d = if diameter_mm > 0.0 { diameter_mm.min(Self::MAX_MM) } else { 0.0 };
+        let d = if diameter_mm > 0.0 {
+            diameter_mm.min(Self::MAX_MM)
+        } else {
+            0.0
+        };
         let place = d * (N as f32 / Self::MAX_MM);
         let i = (place as usize).min(N - 1);
         let (from, to) = (self.speeds[i], self.speeds.get(i + 1).copied().unwrap_or(self.last));
