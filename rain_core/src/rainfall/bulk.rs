@@ -9,7 +9,7 @@
 use core::f64::consts::{FRAC_PI_4, PI};
 
 use super::drop_sizes::DropSizes;
-use super::spectrum::{FLUX_FACTOR, power};
+use super::spectrum::{FLUX_FACTOR, diameters, power};
 
 impl DropSizes {
     /// Rain rate, R = 6π·10⁻⁴ ∫ N v D³ dD. Units: mm/h. Error: 1e-6 relative.
@@ -53,11 +53,14 @@ impl DropSizes {
     /// D with below(D) = half of below(b), by Newton's method kept inside a bracket. The density of `below` is N D³
     /// times `weight`.
     fn median(&self, a_mm: f64, b_mm: f64, weight: impl Fn(f64) -> f64, below: impl Fn(f64) -> f64) -> f64 {
-        let half = 0.5 * below(b_mm);
-        if half.is_nan() || half <= 0.0 {
+        let Some((a, b)) = diameters(a_mm, b_mm) else {
+            return 0.0;
+        };
+        let half = 0.5 * below(b);
+        if half <= 0.0 {
             return 0.0;
         }
-        let (mut low, mut high) = (a_mm.max(0.0), b_mm.min(self.end_mm()));
+        let (mut low, mut high) = (a, b.min(a + self.end_mm()));
         // A middle that never is beyond the bulk of the water.
         let mut d = low + (0.5 * (high - low)).min(2.0 / self.parts()[0].1.slope_per_mm());
         for _ in 0..100 {

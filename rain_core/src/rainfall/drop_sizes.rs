@@ -8,8 +8,8 @@ use thiserror::Error;
 
 use super::gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};
 use super::renormalise::carrying;
-use super::spectrum::{Distribution, Spectrum, power};
-use super::terminal_velocity::terminal_velocity;
+use super::spectrum::{Distribution, Spectrum, diameters, power};
+use super::terminal_velocity::{GUNN_KINZER, terminal_velocity};
 use crate::error::{ConfigError, in_range};
 use crate::quadrature::GaussLegendre;
 
@@ -268,19 +268,19 @@ impl DropSizes {
 
     /// ∫ N(D) w(D) dD over [a, b] mm by Gauss–Legendre panels, for any smooth weight.
     ///
-    /// Panels end where fall laws have corners (0.1, 1.07, 5.8, 7 mm). `b` may be infinite; negative limits count as 0,
+    /// Panels end where fall laws have corners or knots (0.1 to 1 mm every 0.1, to 5.8 mm every 0.2; 1.07, 7 mm). `b` may be infinite; negative limits count as 0,
     /// NaN or b ≤ a give 0.
     ///
     /// Error: 1e-6 relative for weights made of powers and fall laws.
     pub fn integral(&self, a_mm: f64, b_mm: f64, weight: impl Fn(f64) -> f64) -> f64 {
+        let Some((a, b)) = diameters(a_mm, b_mm) else {
+            return 0.0;
+        };
         self.parts()
             .iter()
             .map(|(share, law)| {
-                let end = b_mm.min(law.end_mm(a_mm));
-                share
-                    * paneled(a_mm, end, 3.0 / law.slope_per_mm(), |d| {
-                        law.concentration(d) * weight(d)
-                    })
+                let integrand = |d: f64| law.concentration(d) * weight(d);
+                share * paneled(a, b.min(law.end_mm(a)), 3.0 / law.slope_per_mm(), integrand)
             })
             .sum()
     }
@@ -297,27 +297,37 @@ impl DropSizes {
     }
 }
 
-/// ∫ₐᵇ f dD by eight-point panels of at most `scale` mm and at most 0.6 mm below 5.8 mm, with borders at the corners of
-/// fall laws. 0 when b ≤ a or a limit is NaN.
-pub(super) fn paneled(a: f64, b: f64, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const CORNERS: [f64; 4] = [0.1, 1.07, 5.8, 7.0];
-    let a = a.max(0.0);
-    if a.is_nan() || b.is_nan() || b <= a {
-        return 0.0;
+/// Where fall laws have knots and corners. Units: mm.
+const BORDERS: [f64; 36] = borders();
+
+const fn borders() -> [f64; 36] {
+    let mut borders = [7.0; 36];
+    let mut i = 0;
+    while i < 10 {
+        borders[i] = GUNN_KINZER[i + 1].0;
+        i += 1;
     }
-    let rule = GaussLegendre::<8>::RULE;
+    borders[10] = 1.07;
+    while i < 34 {
+        borders[i + 1] = GUNN_KINZER[i + 1].0;
+        i += 1;
+    }
+    borders
+}
+
+/// ∫ₐᵇ f dD by six-point panels of at most `scale` mm that end at the knots of fall laws. `a` from 0 on.
+pub(super) fn paneled(a: f64, b: f64, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let rule = GaussLegendre::<6>::RULE;
     let mut sum = 0.0;
     let mut from = a;
-    for corner in CORNERS.into_iter().chain([b]) {
-        let to = corner.min(b);
-        if to <= from {
-            continue;
+    for border in BORDERS.into_iter().chain([b]) {
+        let to = border.min(b);
+        if to > from {
+            // At most 64 panels: what is that much longer than the scale has decayed long before its end.
+            let panels = ((to - from) / scale).ceil().min(64.0) as u32;
+            sum += rule.integrate_panels(from, to, panels, &f);
+            from = to;
         }
-        let width = if to <= 5.8 { scale.min(0.6) } else { scale };
-        // At most 64 panels: scales shorter than that have decayed long before.
-        let panels = ((to - from) / width).ceil().clamp(1.0, 64.0) as u32;
-        sum += rule.integrate_panels(from, to, panels, &f);
-        from = to;
     }
     sum
 }

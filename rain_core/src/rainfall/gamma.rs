@@ -6,8 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::drop_sizes::paneled;
 use super::incomplete_gamma::shares;
-use super::spectrum::{FLUX_FACTOR, MAX_INTENSITY_MM_H, MIN_SLOPE_INTENSITY_MM_H, power};
+use super::spectrum::{FLUX_FACTOR, MAX_INTENSITY_MM_H, MIN_SLOPE_INTENSITY_MM_H, diameters, power};
 use crate::error::{ConfigError, in_range};
 use crate::ops;
 use crate::quadrature::GaussLegendre;
@@ -193,10 +194,9 @@ impl GammaSpectrum {
     /// Error: 1e-11 relative.
     #[must_use]
     pub fn moment(&self, n: u32, a_mm: f64, b_mm: f64) -> f64 {
-        let a = a_mm.max(0.0);
-        if a.is_nan() || b_mm.is_nan() || b_mm <= a {
+        let Some((a, b_mm)) = diameters(a_mm, b_mm) else {
             return 0.0;
-        }
+        };
         let s = self.shape + f64::from(n) + 1.0;
         let slope = self.slope_per_mm();
         let (low, high) = (shares(s, slope * a), shares(s, slope * b_mm));
@@ -217,12 +217,11 @@ impl GammaSpectrum {
     /// Rain rate carried by diameters in [a, b] mm with a fall law. Units: mm/h. Domain and clamps as in
     /// [`GammaSpectrum::moment`]. Error: 1e-6 relative.
     pub fn rain_rate_mm_h(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
-        let end = self.end_mm(a_mm);
-        let scale = 3.0 / self.slope_per_mm();
-        FLUX_FACTOR
-            * super::drop_sizes::paneled(a_mm, b_mm.min(end), scale, |d| {
-                self.concentration(d) * power(d, 3) * speed_m_s(d)
-            })
+        let Some((a, b)) = diameters(a_mm, b_mm) else {
+            return 0.0;
+        };
+        let water = |d: f64| self.concentration(d) * power(d, 3) * speed_m_s(d);
+        FLUX_FACTOR * paneled(a, b.min(self.end_mm(a)), 3.0 / self.slope_per_mm(), water)
     }
 
     /// Diameter beyond which nothing counts, above a lower limit. Units: mm.

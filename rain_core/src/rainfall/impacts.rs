@@ -12,7 +12,7 @@ use core::f64::consts::PI;
 use glam::DVec3;
 
 use super::drop_sizes::DropSizes;
-use super::spectrum::{FLUX_FACTOR, power};
+use super::spectrum::{FLUX_FACTOR, diameters, power};
 use crate::constants::WATER_DENSITY;
 use crate::ops;
 
@@ -81,12 +81,12 @@ impl DropSizes {
         weight: impl Fn(f64) -> f64,
         speed_m_s: impl Fn(f64) -> f64,
     ) -> f64 {
-        if !(normal.is_finite() && wind_m_s.is_finite()) {
+        let Some((a, b)) = diameters(a, b).filter(|_| normal.is_finite() && wind_m_s.is_finite()) else {
             return 0.0;
-        }
+        };
         let approach = |d: f64| speed_m_s(d) * normal.y - wind_m_s.dot(normal);
         // The approach speed changes sign at most once, as v rises with D: a border there spares a kink.
-        let (mut low, mut high) = (a.max(0.0), b.min(self.end_mm()));
+        let (mut low, mut high) = (a, b.min(a + self.end_mm()));
         let side = approach(low) > 0.0;
         if side != (approach(high) > 0.0) {
             for _ in 0..60 {
@@ -99,7 +99,7 @@ impl DropSizes {
             }
         }
         let hits = |d: f64| weight(d) * approach(d).max(0.0);
-        self.integral(a, low.min(b), hits) + self.integral(low.max(a), b, hits)
+        self.integral(a, low, hits) + self.integral(low, b, hits)
     }
 }
 

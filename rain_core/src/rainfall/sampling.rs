@@ -17,7 +17,9 @@ pub struct AirSampler {
     min_mm: f64,
     max_mm: f64,
     slope_per_mm: f64,
-    /// e^(−Λ(b − a)) − 1, in [−1, 0).
+    /// e^(−Λ(b − a)), in [0, 1).
+    rest: f64,
+    /// The same less 1, without cancellation.
     span: f64,
 }
 
@@ -42,6 +44,7 @@ impl AirSampler {
             min_mm,
             max_mm,
             slope_per_mm,
+            rest: ops::exp(-slope_per_mm * (max_mm - min_mm)),
             span: ops::exp_m1(-slope_per_mm * (max_mm - min_mm)),
         })
     }
@@ -52,15 +55,26 @@ impl AirSampler {
     #[must_use]
     pub fn diameter_mm(&self, u: f64) -> f64 {
         let u = if u > 0.0 { u.min(1.0) } else { 0.0 };
-        let d = self.min_mm - ops::ln_1p(u * self.span) / self.slope_per_mm;
+        // The share of the larger drops, 1 − u(1 − e^(−Λ(b − a))): by its distance from 1 or from 0.
+        let ln_share = if u * self.span > -0.5 {
+            ops::ln_1p(u * self.span)
+        } else {
+            ops::ln((1.0 - u) + u * self.rest)
+        };
+        let d = self.min_mm - ln_share / self.slope_per_mm;
         d.clamp(self.min_mm, self.max_mm)
     }
 
-    /// [`AirSampler::diameter_mm`] in single precision. Error: 1e-6 relative for u up to 0.9999, where u itself is rough.
+    /// [`AirSampler::diameter_mm`] in single precision. Error: 1e-6 relative.
     #[must_use]
     pub fn diameter_mm_f32(&self, u: f32) -> f32 {
         let u = if u > 0.0 { u.min(1.0) } else { 0.0 };
-        let d = self.min_mm as f32 - ops::ln_1pf(u * self.span as f32) / self.slope_per_mm as f32;
+        let ln_share = if u * self.span as f32 > -0.5 {
+            ops::ln_1pf(u * self.span as f32)
+        } else {
+            ops::lnf((1.0 - u) + u * self.rest as f32)
+        };
+        let d = self.min_mm as f32 - ln_share / self.slope_per_mm as f32;
         d.clamp(self.min_mm as f32, self.max_mm as f32)
     }
 }
@@ -132,7 +146,12 @@ impl<const N: usize> DiameterTable<N> {
             }
             let (low, high) = (border(step), border(step + 1));
             let share = beyond[step] - beyond[step + 1];
-            let mut d = low + (high - low) * ((beyond[step] - target) / share).clamp(0.0, 1.0);
+            let part = if share > 0.0 {
+                (beyond[step] - target) / share
+            } else {
+                0.0
+            };
+            let mut d = low + (high - low) * part.clamp(0.0, 1.0);
             // Newton's method on the step's own integral.
             for _ in 0..3 {
                 let excess = beyond[step + 1] + rule.integrate(d, high, density) - target;

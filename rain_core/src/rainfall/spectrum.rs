@@ -183,12 +183,15 @@ impl Spectrum {
     }
 }
 
+/// A range of diameters with the part below 0 cut off; none when it is empty or an end is NaN, which `max` would hide.
+pub(super) fn diameters(a: f64, b: f64) -> Option<(f64, f64)> {
+    let held = a.max(0.0);
+    (!a.is_nan() && b > held && held < f64::INFINITY).then_some((held, b))
+}
+
 /// ∫ₐᵇ e^(−ΛD) Dⁿ dD from the finite sum of the incomplete gamma function.
 pub(super) fn exponential_moment(slope: f64, n: u32, a: f64, b: f64) -> f64 {
-    let a = a.max(0.0);
-    if a.is_nan() || b.is_nan() || b <= a {
-        return 0.0;
-    }
+    let Some((a, b)) = diameters(a, b) else { return 0.0 };
     // Q(x) = e^(−x) Σ xʲ/j!, j = 0..n, is the upper share beyond x = ΛD.
     let upper = |d: f64| {
         if d == f64::INFINITY {
@@ -214,10 +217,10 @@ pub(super) fn exponential_moment(slope: f64, n: u32, a: f64, b: f64) -> f64 {
 
 /// [`exponential_moment`] in single precision.
 fn exponential_moment_f32(slope: f32, n: u32, a: f32, b: f32) -> f32 {
-    let a = a.max(0.0);
-    if a.is_nan() || b.is_nan() || b <= a {
+    if a.is_nan() || b.is_nan() || b <= a.max(0.0) {
         return 0.0;
     }
+    let a = a.max(0.0);
     let upper = |d: f32| {
         let x = slope * d;
         // e^(−88) is the smallest normal number; the sum would overflow long after.
@@ -249,10 +252,7 @@ pub(super) fn power(d: f64, n: u32) -> f64 {
 /// ∫ₐᵇ e^(−ΛD) Dⁿ w(D) dD by Gauss–Legendre panels short against 1/Λ and the fall-speed fit's own wiggles.
 fn weighted_integral(slope: f64, n: u32, a: f64, b: f64, weight: impl Fn(f64) -> f64) -> f64 {
     const PANELS: u32 = 8;
-    let a = a.max(0.0);
-    if a.is_nan() || b.is_nan() || b <= a {
-        return 0.0;
-    }
+    let Some((a, b)) = diameters(a, b) else { return 0.0 };
     // e^(−45) D³ is below 1e-15 of the integral.
     let end = b.min(a + 45.0 / slope);
     // The fit has a corner where it is clamped: a panel border there keeps the rule's order.
