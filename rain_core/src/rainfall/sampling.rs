@@ -172,8 +172,8 @@ impl<const N: usize> DiameterTable<N> {
     ///
     /// `u` in [0, 1], held there; NaN counts as 0. A cube root and one linear interpolation.
     ///
-    /// Error at 10 mm/h, 0.2 to 6 mm, 128 entries: at most 0.011 mm, 0.013 % in the mean D³; 64 and 256 entries: 0.047 and
-    /// 0.002 mm, 0.05 and 0.003 %.
+    /// Error at 10 mm/h, 0.2 to 6 mm, with 64, 128, 256 entries: mean D³ 0.05, 0.013, 0.003 %; D of all drops but one in
+    /// 100 000 within 0.037, 0.010, 0.004 mm, of the rest within 0.14, 0.04, 0.015 mm.
     #[must_use]
     pub fn diameter_mm(&self, u: f32) -> f32 {
         let u = if u > 0.0 { u.min(1.0) } else { 0.0 };
