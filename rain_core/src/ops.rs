@@ -65,3 +65,23 @@ pub fn expf(x: f32) -> f32 {
 pub fn lnf(x: f32) -> f32 {
     libm::logf(x)
 }
+/// e^x − 1 without cancellation, in single precision.
+#[must_use]
+pub fn exp_m1f(x: f32) -> f32 {
+    libm::expm1f(x)
+}
+/// ln(1 + x) without cancellation, in single precision.
+#[must_use]
+pub fn ln_1pf(x: f32) -> f32 {
+    libm::log1pf(x)
+}
+/// Cube root in single precision.
+#[must_use]
+pub fn cbrtf(x: f32) -> f32 {
+    libm::cbrtf(x)
+}
+/// Natural logarithm of |Γ(x)|.
+#[must_use]
+pub fn ln_gamma(x: f64) -> f64 {
+    libm::lgamma(x)
+}

@@ -1,0 +1,96 @@
+//! What each size class of the drop field holds at a rain state.
+
+use super::classes::{CLASS_COUNT, CLASS_EDGES_MM};
+use super::spectrum::{FLUX_FACTOR, Spectrum, exponential_moment};
+use super::terminal_velocity::{MAX_FITTED_DIAMETER_MM, fitted};
+use crate::ops;
+use crate::quadrature::GaussLegendre;
+
+/// Points of the flux integral in each class.
+const POINTS: usize = 4;
+
+/// (D, weight · v D³ · 6π·10⁻⁴) at the points of every class.
+const FLUX_POINTS: [[(f64, f64); POINTS]; CLASS_COUNT] = flux_points();
+
+const fn flux_points() -> [[(f64, f64); POINTS]; CLASS_COUNT] {
+    let rule = GaussLegendre::<POINTS>::RULE;
+    let mut table = [[(0.0, 0.0); POINTS]; CLASS_COUNT];
+    let mut class = 0;
+    while class < CLASS_COUNT {
+        let mid = 0.5 * (CLASS_EDGES_MM[class + 1] + CLASS_EDGES_MM[class]);
+        let half = 0.5 * (CLASS_EDGES_MM[class + 1] - CLASS_EDGES_MM[class]);
+        let mut i = 0;
+        while i < POINTS {
+            let d = mid + half * rule.nodes[i];
+            let v = fitted(if d < MAX_FITTED_DIAMETER_MM {
+                d
+            } else {
+                MAX_FITTED_DIAMETER_MM
+            });
+            table[class][i] = (d, half * rule.weights[i] * v * d * d * d * FLUX_FACTOR);
+            i += 1;
+        }
+        class += 1;
+    }
+    table
+}
+
+/// Drops, water and extinction of every size class, of a spectrum that carries its rain over all diameters.
+///
+/// # Accuracy
+/// Number and extinction in closed form; the water of a class by four points, within 1e-5 of the rain rate. What is
+/// outside 0.5–6 mm belongs to no class.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClassWeights {
+    /// Drops in the air. Units: m⁻³.
+    pub number_per_m3: [f64; CLASS_COUNT],
+    /// Rain that the class carries with the speeds of its drops. Units: mm/h.
+    pub rain_rate_mm_h: [f64; CLASS_COUNT],
+    /// Geometric extinction. Units: m⁻¹.
+    pub extinction_per_m: [f64; CLASS_COUNT],
+}
+
+impl ClassWeights {
+    /// The weights of a rain state: 13 + 48 exponentials, no allocation.
+    ///
+    /// Error: number and extinction 1e-12, rain rate 1e-5 of the whole.
+    #[must_use]
+    pub fn new(spectrum: &Spectrum) -> Self {
+        let (n0, slope) = (spectrum.n0_per_m3_mm, spectrum.slope_per_mm);
+        let beyond = CLASS_EDGES_MM.map(|d| {
+            let x = slope * d;
+            let e = ops::exp(-x);
+            // Shares of the numbers and of the areas beyond the edge: e^(−x), e^(−x)(1 + x + x²/2).
+            (e, e * (1.0 + x * (1.0 + 0.5 * x)))
+        });
+        let number = n0 / slope;
+        let extinction = core::f64::consts::FRAC_PI_4 * 1e-6 * 2.0 * number / (slope * slope);
+        Self {
+            number_per_m3: core::array::from_fn(|k| number * (beyond[k].0 - beyond[k + 1].0)),
+            rain_rate_mm_h: core::array::from_fn(|k| {
+                n0 * FLUX_POINTS[k]
+                    .iter()
+                    .map(|(d, w)| w * ops::exp(-slope * d))
+                    .sum::<f64>()
+            }),
+            extinction_per_m: core::array::from_fn(|k| extinction * (beyond[k].1 - beyond[k + 1].1)),
+        }
+    }
+
+    /// Root mean square diameter of a class: one drop of that size stands for its extinction. Units: mm.
+    ///
+    /// `class` in 0..12; the class's middle when it is empty or there is no such class.
+    ///
+    /// Error: 1e-9 relative.
+    #[must_use]
+    pub fn rms_diameter_mm(spectrum: &Spectrum, class: usize) -> f64 {
+        let k = class.min(CLASS_COUNT - 1);
+        let (a, b) = (CLASS_EDGES_MM[k], CLASS_EDGES_MM[k + 1]);
+        let number = exponential_moment(spectrum.slope_per_mm, 0, a, b);
+        if number > 0.0 {
+            ops::sqrt(exponential_moment(spectrum.slope_per_mm, 2, a, b) / number)
+        } else {
+            0.5 * (a + b)
+        }
+    }
+}
