@@ -23,7 +23,7 @@ mod film_flow;
 mod horton;
 mod hyetograph;
 mod preset;
-mod store;
+pub(crate) mod store;
 mod surface_class;
 mod surfaces;
 mod timeline;
