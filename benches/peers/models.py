@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Models of rain_core beside published Python packages, interleaved in one run, as ratios.
 
-    python3 -m venv /tmp/peers && /tmp/peers/bin/pip install landlab pyflwdir PySDM
+    python3 -m venv /tmp/peers && /tmp/peers/bin/pip install landlab pyflwdir PySDM "requireit<0.6"
     /tmp/peers/bin/python benches/peers/models.py [--rounds 7] [--out FILE.csv]
 
 - filled depressions of a fractal terrain: richdem (Zhou 2016), pyflwdir, landlab's SinkFillerBarnes
@@ -85,7 +85,6 @@ def terrain(cells, seed=7):
 
 
 def fillers(ours, heights):
-    yield "rain: flood alone", lambda: ours.run("fill", heights, heights.shape[1], heights.shape[0])
     yield "rain: whole bake (tree, curves, catchments)", lambda: ours.run(
         "bake", heights, heights.shape[1], heights.shape[0]
     )
@@ -127,18 +126,22 @@ def speeds(ours, diameters_mm):
     yield "rain: default fit, f32", lambda: ours.run("speed-f32", diameters_mm)
     yield "rain: Beard 1976, f64", lambda: ours.run("beard", diameters_mm)
     if installed("PySDM"):
+        from PySDM import Formulae
         from PySDM.backends import CPU
         from PySDM.dynamics import terminal_velocity
 
-        backend = CPU()
-        radius = backend.Storage.from_ndarray(diameters_mm * 0.5e-3)
-        output = backend.Storage.from_ndarray(np.zeros_like(diameters_mm))
-        for name, law in (
-            ("PySDM Gunn & Kinzer interpolation (numba)", terminal_velocity.GunnKinzer1949),
-            ("PySDM Rogers & Yau (numba)", terminal_velocity.RogersYau),
+        for name, law, formula in (
+            ("PySDM Gunn & Kinzer interpolation (numba)", terminal_velocity.GunnKinzer1949, "GunnKinzer1949"),
+            ("PySDM Rogers & Yau (numba)", terminal_velocity.RogersYau, "RogersYau"),
         ):
+            backend = CPU(Formulae(terminal_velocity=formula))
+            radius = backend.Storage.from_ndarray(diameters_mm * 0.5e-3)
+            output = backend.Storage.from_ndarray(np.zeros_like(diameters_mm))
             law = law(backend)
-            yield name, lambda law=law: (timed(lambda: law(output, radius))[0], output.to_ndarray())
+            yield name, lambda law=law, output=output, radius=radius: (
+                timed(lambda: law(output, radius))[0],
+                output.to_ndarray(),
+            )
 
 
 def compare(title, contenders, rounds, error, per):
