@@ -16,7 +16,7 @@ use crate::quadrature::GaussLegendre;
 /// Normalised gamma spectrum, N(D) = N_w f(µ) (D/D_m)^µ e^(−(4+µ) D/D_m).
 ///
 /// f(µ) = (6/256) (4+µ)^(4+µ)/Γ(4+µ), so that the liquid water is π·10⁻³ N_w (D_m/4)⁴ g/m³ for every µ, and µ = 0 is the
-/// exponential of N₀ = N_w, Λ = 4/D_m. Source: Testud et al. 2001, eqs. 10–17.
+/// exponential of N₀ = N_w, Λ = 4/D_m. Source: Testud et al. 2001.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GammaSpectrum {
     nw_per_m3_mm: f64,

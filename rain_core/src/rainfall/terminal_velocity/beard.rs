@@ -129,7 +129,7 @@ impl BeardAir {
         self.pressure_pa == SEA_LEVEL_PRESSURE_PA && self.temperature_c == STANDARD_TEMPERATURE_C
     }
 
-    /// Terminal speed by Beard 1976, table 1. Units: m/s.
+    /// Terminal speed by Beard 1976. Units: m/s.
     ///
     /// `diameter_mm` in mm, domain [0, 7], held at 7; a negative or NaN diameter returns 0.
     ///
