@@ -1,7 +1,7 @@
 //! Bulk quantities of a rain: water in the air, medians, extinction, drift.
 //!
-//! All take the range of diameters [a, b] mm, which only selects: nothing is renormalised. `b` may be infinite; negative
-//! limits count as 0; NaN or b ≤ a give 0. Fall laws take mm and give m/s.
+//! All take the range of diameters [a, b] mm, which only selects: nothing is renormalised. `b` may be infinite;
+//! negative limits count as 0; NaN or b ≤ a give 0. Fall laws take mm and give m/s.
 //!
 //! # Accuracy
 //! Those that need a fall law are quadratures within 2e-6; the others closed forms within 1e-9.
@@ -84,8 +84,8 @@ impl DropSizes {
         d
     }
 
-    /// Flux-weighted mean of 1/v, ∫ N D³ dD/∫ N v D³ dD: the share of the rain that a wall catches per m/s of wind, and the
-    /// way that wind carries rain sideways per metre of fall. Units: s/m.
+    /// Flux-weighted mean of 1/v, ∫ N D³ dD/∫ N v D³ dD: the share of the rain that a wall catches per m/s of wind, and
+    /// the way that wind carries rain sideways per metre of fall. Units: s/m.
     ///
     /// 0 when there is no drop. Error: 2e-6 relative. Source: Lacy 1965 for the form.
     pub fn mean_inverse_velocity_s_m(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {

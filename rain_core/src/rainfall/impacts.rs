@@ -4,8 +4,8 @@
 //! these means: variance equals mean.
 //!
 //! # Accuracy
-//! Quadratures within 2e-6. Exponential distributions over-count drops below 0.5 mm by factors: quote counts from there.
-//! Drops follow the wind at once and hit at terminal speed.
+//! Quadratures within 2e-6. Exponential distributions over-count drops below 0.5 mm by factors: quote counts from
+//! there. Drops follow the wind at once and hit at terminal speed.
 
 use core::f64::consts::PI;
 
@@ -45,8 +45,8 @@ impl DropSizes {
 
     /// Impacts on a surface of any slant in wind, ∫ N max(0, −w·n) dD with w = wind − v ŷ. Units: m⁻² s⁻¹.
     ///
-    /// `normal`: unit vector out of the surface, y up; `wind_m_s`: where the air goes. Vectors that are not finite give 0.
-    /// Error: 1e-4 relative.
+    /// `normal`: unit vector out of the surface, y up; `wind_m_s`: where the air goes. Vectors that are not finite give
+    /// 0. Error: 1e-4 relative.
     pub fn impacts_on_surface_per_m2_s(
         &self,
         normal: DVec3,
@@ -60,8 +60,8 @@ impl DropSizes {
 
     /// Rain on a surface of any slant in wind, by its own area. Units: mm/h.
     ///
-    /// As [`DropSizes::impacts_on_surface_per_m2_s`]. On a wall that faces the wind U it is R · U · t with the mean 1/v, t.
-    /// Error: 1e-4 relative.
+    /// As [`DropSizes::impacts_on_surface_per_m2_s`]. On a wall that faces the wind U it is R · U · t with the mean
+    /// 1/v, t. Error: 1e-4 relative.
     pub fn rain_on_surface_mm_h(
         &self,
         normal: DVec3,

@@ -2,7 +2,8 @@
 //!
 //! # Accuracy
 //! Within 0.043 m/s (2 %) of Gunn & Kinzer's measurements from 0.3 to 5.8 mm at sea level, and tied to the physics of
-//! each range elsewhere. Dry air, water at the air's temperature (Kell 1975); the pieces meet within 0.002 m/s at 1.07 mm and 2e-5 m/s at 19 µm.
+//! each range elsewhere. Dry air, water at the air's temperature (Kell 1975); the pieces meet within 0.002 m/s at 1.07
+//! mm and 2e-5 m/s at 19 µm.
 
 use super::air::{air_density_kg_m3, air_viscosity_pa_s, held, water_density_kg_m3, water_surface_tension_n_m};
 use crate::constants::{AIR_DENSITY, GRAVITY, SEA_LEVEL_PRESSURE_PA, STANDARD_TEMPERATURE_C, ZERO_CELSIUS_K};
