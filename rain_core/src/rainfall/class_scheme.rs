@@ -1,7 +1,7 @@
 //! How to cut drop sizes into classes: why the drop field has twelve, with logarithmic edges.
 //!
-//! All drops of a class move at one speed, ∫Nv/∫N at one rain rate, so that changing rain moves no drop. What that costs
-//! is the class error of this module; the study `size-classes` of the bench programme draws it for every scheme.
+//! All drops of a class move at one speed, ∫Nv/∫N at one rain rate, so that changing rain moves no drop. What that
+//! costs is the class error of this module; the study `size-classes` of the bench programme draws it for every scheme.
 //!
 //! # Accuracy
 //! Quadratures within 1e-6; the errors that they measure are 1e-3 and more.
@@ -79,8 +79,8 @@ pub struct ClassErrors {
     pub number_flux: f64,
     /// Σ water · class speed over ∫ N v D³ dD, less 1. Units: none.
     pub water_flux: f64,
-    /// Σ number · square of the class's diameter over ∫ N D² dD, less 1, with the diameter of the held rate. 0 when every
-    /// drop keeps its own. Units: none.
+    /// Σ number · square of the class's diameter over ∫ N D² dD, less 1, with the diameter of the held rate. 0 when
+    /// every drop keeps its own. Units: none.
     pub extinction: f64,
     /// Root mean square of class speed over own speed, less 1, weighted by D² N. Units: none.
     pub speed_rms: f64,

@@ -6,39 +6,49 @@ use super::terminal_velocity::{MAX_FITTED_DIAMETER_MM, fitted};
 use crate::ops;
 use crate::quadrature::GaussLegendre;
 
-/// Points of the flux integral in each class.
-const POINTS: usize = 4;
+/// What the three-point Gauss rule needs of a class to integrate its flux.
+struct FluxRule {
+    /// Distance of the outer points from the middle. Units: mm.
+    reach_mm: f64,
+    /// weight · v D³ · 6π·10⁻⁴ at the points, rising.
+    weights: [f64; 3],
+}
 
-/// (D, weight · v D³ · 6π·10⁻⁴) at the points of every class.
-const FLUX_POINTS: [[(f64, f64); POINTS]; CLASS_COUNT] = flux_points();
+const FLUX_RULES: [FluxRule; CLASS_COUNT] = flux_rules();
 
-const fn flux_points() -> [[(f64, f64); POINTS]; CLASS_COUNT] {
-    let rule = GaussLegendre::<POINTS>::RULE;
-    let mut table = [[(0.0, 0.0); POINTS]; CLASS_COUNT];
+const fn flux_rules() -> [FluxRule; CLASS_COUNT] {
+    let rule = GaussLegendre::<3>::RULE;
+    let mut rules = [const {
+        FluxRule {
+            reach_mm: 0.0,
+            weights: [0.0; 3],
+        }
+    }; CLASS_COUNT];
     let mut class = 0;
     while class < CLASS_COUNT {
         let mid = 0.5 * (CLASS_EDGES_MM[class + 1] + CLASS_EDGES_MM[class]);
         let half = 0.5 * (CLASS_EDGES_MM[class + 1] - CLASS_EDGES_MM[class]);
+        rules[class].reach_mm = half * rule.nodes[2];
         let mut i = 0;
-        while i < POINTS {
+        while i < 3 {
             let d = mid + half * rule.nodes[i];
             let v = fitted(if d < MAX_FITTED_DIAMETER_MM {
                 d
             } else {
                 MAX_FITTED_DIAMETER_MM
             });
-            table[class][i] = (d, half * rule.weights[i] * v * d * d * d * FLUX_FACTOR);
+            rules[class].weights[i] = half * rule.weights[i] * v * d * d * d * FLUX_FACTOR;
             i += 1;
         }
         class += 1;
     }
-    table
+    rules
 }
 
 /// Drops, water and extinction of every size class, of a spectrum that carries its rain over all diameters.
 ///
 /// # Accuracy
-/// Number and extinction in closed form; the water of a class by four points, within 1e-5 of the rain rate. What is
+/// Number and extinction in closed form; the water of a class by three points, within 2e-5 of the rain rate. What is
 /// outside 0.5–6 mm belongs to no class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClassWeights {
@@ -51,9 +61,9 @@ pub struct ClassWeights {
 }
 
 impl ClassWeights {
-    /// The weights of a rain state: 13 + 48 exponentials, no allocation.
+    /// The weights of a rain state: 13 + 12 exponentials, no allocation.
     ///
-    /// Error: number and extinction 1e-12, rain rate 1e-5 of the whole.
+    /// Error: number and extinction 1e-12, rain rate 2e-5 of the whole.
     #[must_use]
     pub fn new(spectrum: &Spectrum) -> Self {
         let (n0, slope) = (spectrum.n0_per_m3_mm, spectrum.slope_per_mm);
@@ -68,10 +78,11 @@ impl ClassWeights {
         Self {
             number_per_m3: core::array::from_fn(|k| number * (beyond[k].0 - beyond[k + 1].0)),
             rain_rate_mm_h: core::array::from_fn(|k| {
-                n0 * FLUX_POINTS[k]
-                    .iter()
-                    .map(|(d, w)| w * ops::exp(-slope * d))
-                    .sum::<f64>()
+                let FluxRule { reach_mm, weights } = &FLUX_RULES[k];
+                // e^(−ΛD) in the middle of the class from its edges, and at equal distances on either side of it.
+                let middle = ops::sqrt(beyond[k].0 * beyond[k + 1].0);
+                let fall = ops::exp(-slope * reach_mm);
+                n0 * middle * (weights[0] / fall + weights[1] + weights[2] * fall)
             }),
             extinction_per_m: core::array::from_fn(|k| extinction * (beyond[k].1 - beyond[k + 1].1)),
         }

@@ -39,7 +39,8 @@ pub(super) fn carrying(
 }
 
 impl Spectrum {
-    /// The spectrum with N₀ as published: with measured fall speeds it carries up to 19 % more or 27 % less than its rate.
+    /// The spectrum with N₀ as published: with measured fall speeds it carries up to 19 % more or 27 % less than its
+    /// rate.
     ///
     /// Dry (0 mm/h) has no drops.
     ///
@@ -72,7 +73,8 @@ impl Spectrum {
     /// The spectrum renormalised by one N-point Gauss–Legendre rule up to 5.8 mm or 16/Λ, and in closed form beyond
     /// 5.8 mm, where [`terminal_velocity`] is constant: N exponentials in place of the 128 of [`Spectrum::new`].
     ///
-    /// Error against [`Spectrum::new`]: see the test; 2e-3 of the rain rate with 8 points, 2e-5 with 24.
+    /// Error against [`Spectrum::new`] for every family from 1e-4 to 500 mm/h: 3e-3 of the rain rate with 8 points,
+    /// 1e-4 with 16, 5e-5 with 24 and more.
     ///
     /// # Errors
     /// When `intensity_mm_h` is not finite or outside [0, 500].

@@ -110,6 +110,19 @@ fn a_fit_five_percent_off_is_refused() {
 }
 
 #[test]
+fn air_of_another_density_or_temperature_is_noticed() {
+    for (pressure, temperature) in [(0.95 * 90e3, 12.0), (90e3, 20.0)] {
+        let (right, wrong) = (air(90e3, 12.0), air(pressure, temperature));
+        let mut worst = Worst::default();
+        for d in diameters().skip(1).step_by(50) {
+            let v = reference::beard(d * 1e-3, right.pressure_pa(), right.temperature_c());
+            worst.relative(wrong.terminal_velocity(d), v, 1e-12, || format!("{d} mm"));
+        }
+        assert!(std::panic::catch_unwind(|| worst.assert_below(1e-2, 50)).is_err());
+    }
+}
+
+#[test]
 fn fits_are_as_far_from_the_measurements_as_published() {
     // Law, rms and largest distance in m/s over the 30 entries with D ≥ 0.5 mm, rms relative.
     let published = [

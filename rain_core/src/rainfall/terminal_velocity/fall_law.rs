@@ -102,7 +102,7 @@ impl FallLaw {
     /// `diameter_mm` in mm, with the clamps of each law; a negative or NaN diameter returns 0. Laws for sea level are
     /// multiplied by [`BeardAir::velocity_factor`], which is 1 there.
     ///
-    /// Error: that of the law at sea level; of the factor 0.3 % rms, 1.9 % at most (70–101 kPa, 0–30 °C).
+    /// Error: that of the law at sea level; of the factor 0.3 % rms, 1.95 % at most (70–101 kPa, 0–30 °C).
     #[must_use]
     pub fn speed_m_s(self, diameter_mm: f64, air: &BeardAir) -> f64 {
         match self {

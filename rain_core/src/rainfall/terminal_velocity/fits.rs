@@ -14,7 +14,7 @@ use crate::ops;
 /// Largest drop that the laws without an upper end of their own accept. Units: mm.
 const LARGEST_MM: f64 = 7.0;
 
-/// Foote & du Toit 1969, eq. 8: powers of D from 0 to 9.
+/// Foote & du Toit 1969: powers of D from 0 to 9.
 const FOOTE_DU_TOIT: [f64; 10] = [
     -8.573_154_0e-2,
     3.326_586_2,

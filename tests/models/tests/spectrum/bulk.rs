@@ -314,7 +314,8 @@ fn medians_lie_inside_and_grow_with_the_rain() {
             let air = sizes.volume_median_air_mm(a, b);
             let ground = sizes.volume_median_ground_mm(a, b, terminal_velocity);
             prop_assert!(a < air && air < ground && ground < b, "{} {} {} {} {}", kind, a, air, ground, b);
-            prop_assert!(heavier.volume_median_air_mm(0.0, f64::INFINITY) > sizes.volume_median_air_mm(0.0, f64::INFINITY));
+            let median = sizes.volume_median_air_mm(0.0, f64::INFINITY);
+            prop_assert!(heavier.volume_median_air_mm(0.0, f64::INFINITY) > median);
             let faster = sizes.mean_inverse_velocity_s_m(0.0, f64::INFINITY, terminal_velocity);
             prop_assert!(heavier.mean_inverse_velocity_s_m(0.0, f64::INFINITY, terminal_velocity) < faster);
             // Half of the water is on either side.

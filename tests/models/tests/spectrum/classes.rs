@@ -51,8 +51,8 @@ fn weights_equal_brute_force_for_every_rain() {
         }
     }
     exact.assert_below(1e-11, 800);
-    water.assert_below(1e-5, 400);
-    slow.assert_below(1e-5, 40);
+    water.assert_below(2e-5, 400);
+    slow.assert_below(2e-5, 40);
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn weights_add_up_to_the_range_and_allocate_nothing() {
         let counted = allocation_counter::measure(|| weights = ClassWeights::new(std::hint::black_box(&spectrum)));
         assert_eq!(counted.count_total, 0);
         let sum = |values: &[f64; CLASS_COUNT]| values.iter().sum::<f64>();
-        assert!((sum(&weights.rain_rate_mm_h) / spectrum.rain_rate_mm_h(0.5, 6.0) - 1.0).abs() < 1e-5);
+        assert!((sum(&weights.rain_rate_mm_h) / spectrum.rain_rate_mm_h(0.5, 6.0) - 1.0).abs() < 2e-5);
         assert!((sum(&weights.number_per_m3) / spectrum.moment(0, 0.5, 6.0) - 1.0).abs() < 1e-12);
         assert!((sum(&weights.extinction_per_m) / spectrum.extinction_per_m(0.5, 6.0) - 1.0).abs() < 1e-12);
         for k in 0..CLASS_COUNT {

@@ -534,7 +534,8 @@ fn rates_sizes_and_moments_are_ordered() {
             let whole = less.moment(n, 0.0, f64::INFINITY);
             let parts = less.moment(n, 0.0, cut) + less.moment(n, cut, f64::INFINITY);
             prop_assert!((parts / whole - 1.0).abs() < 1e-10, "{} M{}: {} {}", kind, n, parts, whole);
-            let flux = less.rain_rate_mm_h(0.0, cut, terminal_velocity) + less.rain_rate_mm_h(cut, f64::INFINITY, terminal_velocity);
+            let below = less.rain_rate_mm_h(0.0, cut, terminal_velocity);
+            let flux = below + less.rain_rate_mm_h(cut, f64::INFINITY, terminal_velocity);
             prop_assert!((flux / r - 1.0).abs() < 2e-6, "{}: {} {}", kind, flux, r);
         }
     });

@@ -73,8 +73,9 @@ fn tables_reach_the_published_precision() {
         }
         (cubes, worst)
     }
-    // Relative error of the mean D³ as published; largest errors of D in mm, of all drops but one in 100 000 and of all.
-    // What is printed for the largest, 0.148, 0.047, 0.011, 0.002, depends on which shares were tried: it lies between.
+    // Relative error of the mean D³ as published; largest errors of D in mm, of all drops but one in 100 000 and of
+    // all. What is printed for the largest, 0.148, 0.047, 0.011, 0.002, depends on which shares were tried: it lies
+    // between.
     for ((cubes, (most, all)), (published, published_most, published_all)) in
         [errors::<32>(), errors::<64>(), errors::<128>(), errors::<256>()]
             .into_iter()
