@@ -1,5 +1,6 @@
 //! Other ways to solve the storage equation, kept for comparison. The default is exact: [`CanopyStore`](super::CanopyStore).
 
+use crate::error::clamped;
 use crate::ops;
 
 /// Largest exponent whose exponential is used as it is.
@@ -110,13 +111,13 @@ struct Case {
 impl Case {
     /// None without capacity.
     fn new(capacity: f64, stored: f64, rain: f64, evaporation: f64, dt: f64) -> Option<Self> {
-        let rate = |value: f64| super::clamped(value, 0.0, 1e4) / 3600.0;
+        let rate = |value: f64| clamped(value, 0.0, 1e4) / 3600.0;
         (capacity.is_finite() && capacity > 0.0).then(|| Self {
             capacity,
-            stored: super::clamped(stored, 0.0, capacity),
+            stored: clamped(stored, 0.0, capacity),
             rain: rate(rain),
             evaporation: rate(evaporation),
-            dt: super::clamped(dt, 0.0, 1e9),
+            dt: clamped(dt, 0.0, 1e9),
         })
     }
 }

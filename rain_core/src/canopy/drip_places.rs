@@ -1,5 +1,6 @@
 //! Where under a crown it drips: shares by distance from the trunk, and places drawn from them.
 
+use crate::error::clamped;
 use crate::hash;
 use crate::ops;
 
@@ -31,7 +32,7 @@ const CLASS_ENDS: [f64; 4] = [0.35, 0.625, 0.875, 1.0];
 /// Units: none. Source: [`RADIAL_SHARES`]. Error: rounding; trees differ, and wind undoes the pattern.
 #[must_use]
 pub fn radial_shares(thickness_m: f64) -> [f64; 4] {
-    let x = super::clamped(thickness_m, RADIAL_THICKNESSES_M[0], RADIAL_THICKNESSES_M[3]) - RADIAL_THICKNESSES_M[0];
+    let x = clamped(thickness_m, RADIAL_THICKNESSES_M[0], RADIAL_THICKNESSES_M[3]) - RADIAL_THICKNESSES_M[0];
     let row = (x as usize).min(2);
     let t = (x - row as f64).clamp(0.0, 1.0);
     core::array::from_fn(|class| (1.0 - t) * RADIAL_SHARES[row][class] + t * RADIAL_SHARES[row + 1][class])
@@ -68,7 +69,7 @@ pub struct CrownPlace {
 /// Source: choice; rings midway between the measured distances. Error: shares of n places at most 3/n off.
 #[must_use]
 pub fn crown_place(seed: u32, index: u32, crown_radius_m: f64, thickness_m: f64) -> CrownPlace {
-    let radius = super::clamped(crown_radius_m, 0.0, 1000.0);
+    let radius = clamped(crown_radius_m, 0.0, 1000.0);
     let [a, b, c] = hash::pcg3d([index, 0x6472_6970, seed]);
     let shares = radial_shares(thickness_m);
     // Additive recurrence by the golden section from a hashed start: evener than independent draws.

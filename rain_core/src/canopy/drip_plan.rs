@@ -3,7 +3,7 @@
 use super::drip_places::{radial_class, radial_shares};
 use super::drip_rate::drop_volume_m3;
 use super::drip_sizes::DripSizes;
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::hash;
 
 /// Number of radial classes.
@@ -96,7 +96,7 @@ impl DripPlan {
     /// Drops per second of a place when the crown drips `flow_m3_s`. Units: 1/s. 0 for a flow that is not above 0.
     #[must_use]
     pub fn frequency_hz(&self, place: usize, flow_m3_s: f64) -> f64 {
-        self.per_flow(place) * super::clamped(flow_m3_s, 0.0, 1e6)
+        self.per_flow(place) * clamped(flow_m3_s, 0.0, 1e6)
     }
 
     /// Drops of a place per m³ of drip. Units: 1/m³.
@@ -127,7 +127,7 @@ pub struct DripClock {
 impl DripClock {
     /// Adds the drip of an interval. Units: m³. What is not above 0 adds nothing.
     pub fn advance(&mut self, drip_m3: f64) {
-        self.dripped_m3 += super::clamped(drip_m3, 0.0, 1e9);
+        self.dripped_m3 += clamped(drip_m3, 0.0, 1e9);
     }
 
     /// Drip since the start. Units: m³.

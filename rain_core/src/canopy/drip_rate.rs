@@ -1,12 +1,14 @@
 //! From rain and shares to drops per second.
 
+use crate::error::clamped;
+
 /// Largest product of shares, areas and rates that counts; keeps frequencies finite.
 const MOST: f64 = 1e12;
 
 /// Volume of a drop of `diameter_mm`. Units: m³. A diameter that is not above 0 has none; held at 100 mm.
 #[must_use]
 pub fn drop_volume_m3(diameter_mm: f64) -> f64 {
-    let d = super::clamped(diameter_mm, 0.0, 100.0) * 1e-3;
+    let d = clamped(diameter_mm, 0.0, 100.0) * 1e-3;
     core::f64::consts::PI / 6.0 * d * d * d
 }
 
@@ -17,8 +19,8 @@ pub fn drop_volume_m3(diameter_mm: f64) -> f64 {
 /// product is held at 1e12/3.6e6. Source: Weber et al. 2016, eq. 11. Error: rounding.
 #[must_use]
 pub fn drip_flow_m3_s(rain_mm_h: f64, area_m2: f64, shares: [f64; 3]) -> f64 {
-    let share: f64 = shares.iter().map(|&share| super::clamped(share, 0.0, 1.0)).product();
-    let product = super::clamped(rain_mm_h, 0.0, MOST) * super::clamped(area_m2, 0.0, MOST) * share;
+    let share: f64 = shares.iter().map(|&share| clamped(share, 0.0, 1.0)).product();
+    let product = clamped(rain_mm_h, 0.0, MOST) * clamped(area_m2, 0.0, MOST) * share;
     product.min(MOST) / 3.6e6
 }
 
@@ -28,7 +30,7 @@ pub fn drip_flow_m3_s(rain_mm_h: f64, area_m2: f64, shares: [f64; 3]) -> f64 {
 /// Source: Weber et al. 2016, eq. 12. Error: rounding.
 #[must_use]
 pub fn drip_frequency_hz(flow_m3_s: f64, diameter_mm: f64) -> f64 {
-    super::clamped(flow_m3_s, 0.0, MOST) / drop_volume_m3(super::clamped(diameter_mm, 0.01, 100.0))
+    clamped(flow_m3_s, 0.0, MOST) / drop_volume_m3(clamped(diameter_mm, 0.01, 100.0))
 }
 
 /// Seconds between drops, T = 1/f = 6e-4 π D³/(R A q_t q_s q_d). Units: s. None where nothing drips.

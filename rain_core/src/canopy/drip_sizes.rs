@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::clamped;
 use crate::hash;
 use crate::ops;
 
@@ -270,7 +271,7 @@ fn sums(parts: &[f64], total: f64) -> Vec<f64> {
 
 /// The class in which the share `u` lies, and how much of that class lies below it.
 fn place(below: &[f64], u: f64) -> (usize, f64) {
-    let u = super::clamped(u, 0.0, 1.0);
+    let u = clamped(u, 0.0, 1.0);
     let class = below.partition_point(|&end| end <= u).min(below.len() - 1);
     // The end of the last class that holds anything belongs to it.
     let class = if u >= 1.0 {

@@ -48,8 +48,3 @@ pub use drip_stream::{
 };
 pub use properties::{CanopyKind, CanopyProperties, constant_rain_drip_fraction, saturation_time_s};
 pub use store::{CanopyFluxes, CanopyShower, CanopyStore, canopy_shower};
-
-/// `value` held in [min, max]; what is not a number becomes `min`.
-fn clamped(value: f64, min: f64, max: f64) -> f64 {
-    if value.is_nan() { min } else { value.clamp(min, max) }
-}

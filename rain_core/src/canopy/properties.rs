@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 
 /// Largest leaf area index accepted. Units: m² of leaves per m² of ground.
@@ -112,8 +112,8 @@ pub fn saturation_time_s(capacity_mm: f64, rain_mm_h: f64) -> Option<f64> {
 /// Error: equal to the state form to rounding while rain is constant and nothing evaporates.
 #[must_use]
 pub fn constant_rain_drip_fraction(elapsed_s: f64, saturation_time_s: f64, max_drip_fraction: f64) -> f64 {
-    let cap = super::clamped(max_drip_fraction, 0.0, 1.0);
-    let elapsed = super::clamped(elapsed_s, 0.0, f64::MAX);
-    let time = super::clamped(saturation_time_s, 0.0, f64::MAX);
+    let cap = clamped(max_drip_fraction, 0.0, 1.0);
+    let elapsed = clamped(elapsed_s, 0.0, f64::MAX);
+    let time = clamped(saturation_time_s, 0.0, f64::MAX);
     if elapsed >= cap * time { cap } else { elapsed / time }
 }

@@ -4,7 +4,7 @@ use core::ops::AddAssign;
 
 use super::properties::{CanopyProperties, saturation_time_s};
 use super::state_form::Course;
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 use crate::rainfall::MAX_INTENSITY_MM_H;
 
@@ -186,9 +186,9 @@ impl CanopyStore {
     /// `rain_mm_h` in mm/h, held in [0, 500]; `evaporation_mm_h` in mm/h, held in [0, 1e4] (dew wets no leaf); `dt_s`
     /// in s, held in [0, 1e9]. What is not a number counts as 0. Intercepted rain below 1e-9 mm/h falls through.
     pub fn advance(&mut self, rain_mm_h: f64, evaporation_mm_h: f64, dt_s: f64) -> CanopyFluxes {
-        let rain = super::clamped(rain_mm_h, 0.0, MAX_INTENSITY_MM_H) / 3600.0;
-        let evaporation = super::clamped(evaporation_mm_h, 0.0, MAX_EVAPORATION_MM_H) / 3600.0;
-        let dt = super::clamped(dt_s, 0.0, MAX_INTERVAL_S);
+        let rain = clamped(rain_mm_h, 0.0, MAX_INTENSITY_MM_H) / 3600.0;
+        let evaporation = clamped(evaporation_mm_h, 0.0, MAX_EVAPORATION_MM_H) / 3600.0;
+        let dt = clamped(dt_s, 0.0, MAX_INTERVAL_S);
         let mut fluxes = CanopyFluxes {
             rain_mm: rain * dt,
             ..CanopyFluxes::default()
