@@ -9,7 +9,7 @@ use crate::ops;
 /// Fewest and most secondary drops.
 const COUNTS: (f32, f32) = (5.0, 30.0);
 /// Excess over the threshold at which most are thrown.
-const FULL_EXCESS: f32 = 10.0;
+const FULL_EXCESS: f32 = 19.0;
 /// Smallest and largest, in diameters of the drop that fell.
 const SIZES: (f32, f32) = (0.05, 0.3);
 /// Slowest and fastest, in normal speeds of the impact.
@@ -104,7 +104,7 @@ impl Splash {
     /// What `impact` does; `key` tells one impact from the other: the same key, the same drops.
     ///
     /// Deposition up to the threshold (see [`splash_threshold_k`](super::splash_threshold_k)); above it 5 to 30
-    /// secondary drops, linear in K/K_threshold up to 10, the fraction decided by hash. Only the speed along the normal
+    /// secondary drops, linear in K/K_threshold up to 19, the fraction decided by hash. Only the speed along the normal
     /// counts. What is not finite in `impact` counts as 0. Water: thrown + retained = the drop. Source: thresholds as
     /// there; numbers a choice. Error: thrown volume is the sum over [`secondary_drop`] to 1e-6.
     #[must_use]
