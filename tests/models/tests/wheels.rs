@@ -345,8 +345,8 @@ fn air_slows_spray_by_quadratic_drag() {
             "ten times as fast, a tenth of the time"
         );
     }
-    speed.assert_below(3e-8, 48);
-    way.assert_below(3e-8, 48);
+    speed.assert_below(1e-8, 48);
+    way.assert_below(1e-8, 48);
     for a in BAD {
         for b in BAD {
             for value in [

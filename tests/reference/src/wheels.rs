@@ -39,9 +39,9 @@ pub fn drops_per_kg(from: f64, to: f64) -> f64 {
     }) / (to / from).ln()
 }
 
-/// Way and speed through the air of a drop under du/dt = −g u²/v².
+/// Way and speed through the air of a drop under du/dt = −g u²/v², in steps that start small.
 pub fn slowed(start: f64, terminal: f64, time: f64) -> [f64; 2] {
-    runge_kutta(0.0, time, [0.0, start], 20_000, |_, y| {
-        [y[1], -9.80665 * y[1] * y[1] / (terminal * terminal)]
+    runge_kutta(0.0, 1.0, [0.0, start], 20_000, |s, y| {
+        [y[1], -9.80665 * y[1] * y[1] / (terminal * terminal)].map(|rate| 3.0 * s * s * time * rate)
     })
 }
