@@ -49,7 +49,7 @@ pub fn draw(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
         return Err(format!("{}: a time or an error is not finite", study.name));
     }
     let range = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = values.fold((f64::INFINITY, 0_f64), |(low, high), v| (low.min(v), high.max(v)));
         (low * 0.5)..(high * 2.0)
     };
     let x = range(&mut points.iter().map(|p| p.0));
