@@ -54,7 +54,7 @@ pub fn stored_by_lambert_w(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, eva
 /// Principal branch of Lambert's W: the w ≥ −1 with w e^w = x.
 ///
 /// `x` in [−1/e, ∞); below, and what is not a number, counts as −1/e. Infinity returns W₀(f64::MAX). Units: none.
-/// Error: |w e^w − x| ≤ 4e-15 (|x| + 0.4). Source: Halley's iteration.
+/// Error: |w e^w − x| ≤ 4e-13 max(|x|, 0.4). Source: Halley's iteration.
 #[must_use]
 pub fn lambert_w0(x: f64) -> f64 {
     let branch = -1.0 / core::f64::consts::E;

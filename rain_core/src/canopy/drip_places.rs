@@ -26,6 +26,9 @@ const MEASURED_RADIUS_M: f64 = 2.0;
 /// Outer edges of the classes about the measured distances, midway between them, as shares of the crown's radius.
 const CLASS_ENDS: [f64; 4] = [0.35, 0.625, 0.875, 1.0];
 
+/// Drips that reach the ground let go in this lowest part of the canopy: leaves above drip on those below. A choice.
+const LOW_SHARE: f64 = 0.2;
+
 /// Share of the drip in the four radial classes of a crown `thickness_m` thick.
 ///
 /// Linear between the rows, so the sum stays 1; `thickness_m` held in [4.8, 7.8] m, what is not a number counts as 4.8.
@@ -58,11 +61,14 @@ pub struct CrownPlace {
     pub x_m: f64,
     /// Along z. Units: m.
     pub z_m: f64,
+    /// Above the lowest branch: where the drop lets go. Units: m.
+    pub above_branch_m: f64,
     /// Radial class, 0 to 3.
     pub class: usize,
 }
 
-/// Place `index` of a crown, drawn so that it drips by [`radial_shares`] and evenly within each class.
+/// Place `index` of a crown, drawn so that it drips by [`radial_shares`] and evenly within each class, from the lowest
+/// fifth of the canopy.
 ///
 /// `crown_radius_m` in m, held in [0, 1000], what is not a number counts as 0. The same integers give the same place.
 /// Classes are taken in turn by an additive recurrence, so that even a few places follow the shares.
@@ -82,12 +88,13 @@ pub fn crown_place(seed: u32, index: u32, crown_radius_m: f64, thickness_m: f64)
     }
     let from = if class == 0 { 0.0 } else { CLASS_ENDS[class - 1] };
     let to = CLASS_ENDS[class];
-    let along = f64::from(hash::unit_f32(a ^ c));
+    let along = f64::from(hash::unit_f32(a));
     let distance = radius * ops::sqrt(from * from + along * (to * to - from * from)).clamp(from, to);
     let angle = core::f64::consts::TAU * f64::from(hash::unit_f32(b));
     CrownPlace {
         x_m: distance * ops::cos(angle),
         z_m: distance * ops::sin(angle),
+        above_branch_m: LOW_SHARE * clamped(thickness_m, 0.0, 1000.0) * f64::from(hash::unit_f32(c)),
         class,
     }
 }

@@ -76,8 +76,8 @@ pub fn gaussian_drip_share(leaf: LeafType, diameter_mm: f64) -> f64 {
 ///
 /// Allocates three tables of one number a class at construction, nothing afterwards.
 ///
-/// Error: diameters drawn ≤ 1e-12 mm from the inverse of the exact sums of the table; of the fit with 140 classes
-/// ≤ 0.013 mm from the fit's own inverse (number), its moments ≤ 1e-3. In f32 ≤ 2e-6 mm more.
+/// Error: diameters drawn ≤ 1e-9 mm from the inverse of the exact sums of the table, in f32 ≤ 3e-6 mm; of the fit with
+/// 140 classes ≤ 0.013 mm from the fit's own inverse (number), its moments ≤ 1e-3.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DripSizes {
     /// Share of the volume in each class.

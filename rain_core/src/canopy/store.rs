@@ -226,24 +226,27 @@ impl CanopyStore {
         let share = course.start_share();
         let wet_time = course.time_to_empty().min(dt);
         let fall = if wet_time < dt { -share } else { course.fall_after(dt) };
-        // Where q passes q_max: before or after it the drip is the cap's.
+        let gained = |fall: f64| self.capacity_mm * course.gain(fall);
+        let drained_by = |fall: f64, time: f64| ((rain - evaporation) * time - gained(fall)).max(0.0);
+        let drained = drained_by(fall, wet_time);
+        // Where q passes q_max: beyond it the drip is the cap's.
         let cap = self.max_drip_fraction;
-        let crossing = course.time_to_fall(cap - share).min(wet_time);
-        let below =
-            |fall: f64, time: f64| (rain * time - evaporation * time - self.capacity_mm * course.gain(fall)).max(0.0);
-        let drained = below(fall, wet_time);
         let end_share = share + fall;
-        let drip = if share <= cap && end_share <= cap {
+        let drip = if share.max(end_share) <= cap {
             drained
-        } else if share >= cap && end_share >= cap {
+        } else if share.min(end_share) >= cap {
             cap * rain * wet_time
-        } else if share < cap {
-            below(cap - share, crossing) + cap * rain * (wet_time - crossing)
         } else {
-            cap * rain * crossing + (drained - below(cap - share, crossing))
+            let crossing = course.time_to_fall(cap - share).min(wet_time);
+            let before = drained_by(cap - share, crossing);
+            if share < cap {
+                before + cap * rain * (wet_time - crossing)
+            } else {
+                cap * rain * crossing + (drained - before)
+            }
         };
         let stemflow = (drained - drip).max(0.0);
-        let gain = self.capacity_mm * course.gain(fall);
+        let gain = gained(fall);
         if wet_time < dt {
             self.empty(fluxes);
         } else if gain >= self.deficit() {

@@ -15,7 +15,7 @@ pub fn spray_parcel_kg(flow_kg_s: f64, life_s: f64, budget: u32, least_kg: f64) 
 
 /// Turns a flow into whole parcels; what is not yet a parcel waits.
 ///
-/// Everything that came in = parcels · their mass + pending, at any step. Error: 1e-15 of an advance.
+/// Everything that came in = parcels · their mass + pending, at any step. Error: 1e-12 of the mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SprayEmitter {
     pending_kg: f64,

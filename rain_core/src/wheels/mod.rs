@@ -1,4 +1,5 @@
 //! Wheels on wet roads: water met and thrown, spray, grip and hydroplaning, tracks.
+//! What a wheel does to a field of waves is in [`waves`](crate::waves).
 //!
 //! [`WheelWater`] splits the water that a tyre meets among four mechanisms, [`WheelTrail`] says what of it is thrown,
 //! pushed aside and left, [`spray_droplet`] how each mechanism throws, [`SprayEmitter`] turns mass into particles

@@ -61,7 +61,7 @@ impl SprayMechanism {
 
 /// Drops that one kilogram of a mechanism's water makes, its volume spread evenly over ln D. Units: 1/kg.
 ///
-/// Error: 1e-14 against the sum over diameters.
+/// Error: 1e-9 against the sum over diameters.
 #[must_use]
 pub fn drops_per_kg(mechanism: SprayMechanism) -> f64 {
     let (from, to) = mechanism.diameters_mm();

@@ -31,7 +31,7 @@ pub struct WheelWater {
 }
 
 impl WheelWater {
-    /// For a wheel at `speed_m_s` (either way, held at 200) on a film of `film_mm` (held in [0, 1000]). What is not a
+    /// For a valid tyre at `speed_m_s` (either way, held at 200) on a film of `film_mm` (held in [0, 1000]). What is not a
     /// number counts as 0.
     #[must_use]
     pub fn new(tyre: &Tyre, speed_m_s: f64, film_mm: f64) -> Self {
@@ -74,7 +74,7 @@ fn per_mm(tyre: &Tyre, speed_m_s: f64) -> f64 {
 /// What clings and what the grooves carry flies off above the speeds of [`SprayMechanism::onset_m_s`] and is laid down
 /// again below; what is pushed ahead and aside leaves the track at any speed, and flies above its own onset. So
 /// met = thrown + pushed aside + left. Source: Flintsch et al. 2014; onsets a choice about the 48 to 64 km/h at which
-/// spray was first measured (Pilkington 1990). Error: the sum to 1e-15.
+/// spray was first measured (Pilkington 1990). Error: the sum to 1e-13.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WheelTrail {
     /// Thrown into the air, by mechanism; `intercepted_kg_s` is the sum. Units: kg/s.

@@ -320,7 +320,7 @@ fn radial_shares_interpolate_and_places_follow_them() {
     for index in 0..n {
         let place = crown_place(11, index, 4.0, 7.0);
         let radius = place.x_m.hypot(place.z_m);
-        assert!(radius <= 4.0 + 1e-12);
+        assert!(radius <= 4.0 + 1e-12 && (0.0..=0.2 * 7.0).contains(&place.above_branch_m));
         assert_eq!(radial_class(radius * (1.0 - 1e-9), 4.0), place.class, "{place:?}");
         counts[place.class] += 1;
         centre = [centre[0] + place.x_m, centre[1] + place.z_m];
@@ -335,7 +335,7 @@ fn radial_shares_interpolate_and_places_follow_them() {
     assert!(centre[0].hypot(centre[1]) / f64::from(n) < 0.15, "no side is preferred");
     for bad in BAD {
         let place = crown_place(1, 1, bad, bad);
-        assert!(place.x_m.is_finite() && place.z_m.is_finite());
+        assert!(place.x_m.is_finite() && place.z_m.is_finite() && place.above_branch_m.is_finite());
     }
 }
 
