@@ -18,3 +18,7 @@ pub const DRY_AIR_GAS_CONSTANT: f64 = 287.05;
 pub const ZERO_CELSIUS_K: f64 = 273.15;
 /// Temperature at which [`AIR_DENSITY`] holds and Gunn & Kinzer measured. Units: °C.
 pub const STANDARD_TEMPERATURE_C: f64 = 20.0;
+/// Surface tension of water used for drops, waves and splashes. Units: N/m. Source: Pruppacher & Klett 1997, near 20 °C.
+pub const SURFACE_TENSION: f64 = 0.0728;
+/// Dynamic viscosity of water at 20 °C. Units: Pa s.
+pub const WATER_VISCOSITY: f64 = 1.002e-3;
