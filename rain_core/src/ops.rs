@@ -65,3 +65,8 @@ pub fn expf(x: f32) -> f32 {
 pub fn lnf(x: f32) -> f32 {
     libm::logf(x)
 }
+/// Cube root in single precision.
+#[must_use]
+pub fn cbrtf(x: f32) -> f32 {
+    libm::cbrtf(x)
+}
