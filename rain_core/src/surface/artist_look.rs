@@ -25,7 +25,7 @@ fn unit(x: f64) -> f64 {
 }
 
 fn lerp(a: f64, b: f64, t: f64) -> f64 {
-    a + (b - a) * t
+    a * (1.0 - t) + b * t
 }
 
 /// What the rules change of a material. Gloss 1 is a mirror.

@@ -52,10 +52,10 @@ impl ParaboloidPuddle {
     }
 
     /// The level at which inflow and loss balance, Q/(2 π R_c e). Units: m, m³/s, m/s.
-    /// `None` without loss (and NaN): it rises for ever, or stays.
+    /// `None` without loss (and NaN): it rises for ever, or stays. Cut off at 1e9 m. Error: 1e-15 relative.
     #[must_use]
     pub fn balance_level_m(&self, inflow_m3_s: f64, loss_m_s: f64) -> Option<f64> {
-        (loss_m_s > 0.0).then(|| within(inflow_m3_s, 1e6) / (TWO_PI * self.radius_m * loss_m_s))
+        (loss_m_s > 0.0).then(|| (within(inflow_m3_s, 1e6) / (TWO_PI * self.radius_m) / loss_m_s).min(1e9))
     }
 
     /// The level `time_s` later under a constant inflow and a constant loss per area of water. Units: m, m³/s, m/s, s.
@@ -73,12 +73,17 @@ impl ParaboloidPuddle {
         if q == 0.0 {
             return (h - loss * time).max(0.0);
         }
-        let grown = ops::sqrt(h * h + q * time / (0.5 * TWO_PI * self.radius_m));
         let balance = q / (TWO_PI * self.radius_m * loss);
+        if balance <= (1e-17 * h).max(1e-280) {
+            return (h - loss * time).max(balance); // the inflow is too little to show before
+        }
+        let grown = ops::sqrt(h * h + q * time / (0.5 * TWO_PI * self.radius_m));
         if !balance.is_finite() || grown <= 1e-17 * balance {
             return grown; // without loss, or too soon for it to show
         }
-        let (y, t) = (h / balance, loss * time / balance);
+        // e^(−1000) is 0: what lasts longer is at the balance.
+        let y = h / balance;
+        let t = (loss * time / balance).min(y + 1e3);
         if y < 1.0 {
             let root = filling_root(filling(-ops::ln_1p(-y)) + t);
             balance * -ops::exp_m1(-root)

@@ -66,7 +66,7 @@ impl WetBody {
         (1.0 - self.entry_reflectance) * self.escape(b, 1.0)
     }
 
-    /// [`Self::albedo`] in single precision. Error: 2e-7.
+    /// [`Self::albedo`] in single precision. Error: 3e-7.
     #[must_use]
     #[inline]
     pub fn albedo_f32(&self, dry: f32) -> f32 {
@@ -121,7 +121,7 @@ pub fn wet_albedo(dry: f64) -> f64 {
     WetBody::LEKNER_DORF.albedo(dry)
 }
 
-/// [`wet_albedo`] in single precision. Error: 2e-7.
+/// [`wet_albedo`] in single precision. Error: 3e-7.
 #[must_use]
 #[inline]
 pub fn wet_albedo_f32(dry: f32) -> f32 {

@@ -26,14 +26,16 @@ pub fn normal_reflectance(ior: f64) -> f64 {
 #[must_use]
 pub fn film_roughness(dry: f64, water: f64, film_mm: f64, texture_depth_mm: f64) -> f64 {
     let (dry, water) = (dry.max(0.0).min(1.0), water.max(0.0).min(1.0));
-    dry + (water - dry) * smoothstep(0.0, texture_depth_mm.max(0.0), film_mm)
+    let covered = smoothstep(0.0, texture_depth_mm.max(0.0), film_mm);
+    dry * (1.0 - covered) + water * covered
 }
 
 /// [`film_roughness`] in single precision. Error: 6e-7.
 #[must_use]
 pub fn film_roughness_f32(dry: f32, water: f32, film_mm: f32, texture_depth_mm: f32) -> f32 {
     let (dry, water) = (dry.max(0.0).min(1.0), water.max(0.0).min(1.0));
-    dry + (water - dry) * smoothstep_f32(0.0, texture_depth_mm.max(0.0), film_mm)
+    let covered = smoothstep_f32(0.0, texture_depth_mm.max(0.0), film_mm);
+    dry * (1.0 - covered) + water * covered
 }
 
 /// Roughness of water whose waves have this mean square slope ⟨s²⟩ (along one axis) beyond what is drawn as normals:
