@@ -12,4 +12,5 @@ mod spectrum;
 mod splash;
 mod surface;
 mod waves;
+mod weather;
 mod wheels;

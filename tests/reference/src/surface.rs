@@ -37,13 +37,13 @@ impl Plane {
 
     /// Depth at x: the rain of `x` runs off. Units: m.
     pub fn steady(&self, x: f64) -> f64 {
-        bisect(0.0, 1e3, |h| self.alpha * h.powf(self.m) - self.rain * x)
+        bisect(0.0, 1e5, |h| self.alpha * h.powf(self.m) - self.rain * x)
     }
 
     /// Depth at x, t after the rain on the steady plane stopped: the root of the implicit equation by halving.
     pub fn recession(&self, x: f64, t: f64) -> f64 {
         let place = |h: f64| self.alpha * h.powf(self.m) / self.rain + self.m * self.alpha * h.powf(self.m - 1.0) * t;
-        bisect(0.0, 1e3, |h| place(h) - x)
+        bisect(0.0, 1e5, |h| place(h) - x)
     }
 
     /// Depth at (x, t) under rain of any duration, by walking along characteristics dx/dt = m α h^(m−1), dh/dt = rain:

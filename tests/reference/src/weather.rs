@@ -1,12 +1,12 @@
 //! Water on one surface, the artists' levels, and evaporation, integrated in small steps.
 //!
 //! Right-hand sides with every limit as a branch, stepped by Runge and Kutta's rule. A step that ends in another branch
-//! than it began is cut in halves until it is shorter than a microsecond: no event is ever solved for.
+//! than it began is cut in halves until it is shorter than a nanosecond: no event is ever solved for.
 
 use crate::numerics::bisect;
 
 /// Shortest step: events are met to this. Units: s.
-const SHORTEST_S: f64 = 1e-7;
+const SHORTEST_S: f64 = 1e-9;
 
 /// What a surface does with water. Units as in the names.
 #[derive(Debug, Clone, Copy)]
@@ -90,7 +90,8 @@ impl Ground {
             y[0] = self.pores_mm;
         }
         if y[1] < 0.0 {
-            y[0] += y[1];
+            // The soil or the air took more than there was: the soil less, or the pores go on with it.
+            y[if self.initial_mm_h > 0.0 { 4 } else { 0 }] += y[1];
             y[1] = 0.0;
         }
         if y[0] < 0.0 {

@@ -104,14 +104,14 @@ fn sheet_flow_is_what_arrives_along_characteristics_after_short_and_long_rain() 
             for time in [0.2, 0.5, 0.9, 1.4, 2.5, 4.0] {
                 for x in [0.5, 2.0, 5.0] {
                     let (t, d) = (time * whole, duration * whole);
-                    let depth = plane.by_characteristics(x, t, d, 400);
+                    let depth = plane.by_characteristics(x, t, d, 150);
                     worst.relative(flow.depth_m(x, t, d), depth, 1e-7, || format!("{plane:?} {x} {t} {d}"));
                 }
             }
         }
     }
     // The walk's own error: its speed is not smooth where the depth is 0.
-    worst.assert_below(2e-4, 100);
+    worst.assert_below(5e-4, 100);
 }
 
 #[test]
