@@ -73,7 +73,7 @@ impl Inlet {
     /// √d falls linearly under the orifice law, 1/√d rises linearly under the weir law. Units: m, m², s.
     ///
     /// Negative depths and times and NaN count as 0, depths above 100 m as 100 m, times above 1e9 s as 1e9 s; a pond of
-    /// area 0 or NaN is empty at once. Error: 1e-14 relative.
+    /// area 0 or NaN is empty at once. Error: 3e-8 relative against 20 000 Runge–Kutta steps across the kink.
     #[must_use]
     pub fn drained_depth_m(&self, depth_m: f64, pond_area_m2: f64, time_s: f64) -> f64 {
         let mut root = ops::sqrt(depth_m.max(0.0).min(MAX_DEPTH_M));

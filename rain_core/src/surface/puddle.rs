@@ -62,7 +62,7 @@ impl ParaboloidPuddle {
     ///
     /// Negative values and NaN count as 0; levels are cut off at 1e3 m, inflows at 1e6 m³/s, losses at 1 m/s, times at
     /// 1e10 s. Without inflow the level falls by e t to 0; without loss √(h² + Q t/(π R_c)). Any cut of the time ends
-    /// at the same level. Error: 1e-12 relative to the higher of both levels.
+    /// at the same level. Error: 1e-13 relative to the higher of both levels.
     #[must_use]
     pub fn level_after_m(&self, level_m: f64, inflow_m3_s: f64, loss_m_s: f64, time_s: f64) -> f64 {
         let (h, q) = (within(level_m, 1e3), within(inflow_m3_s, 1e6));

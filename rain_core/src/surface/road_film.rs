@@ -53,7 +53,7 @@ impl RoadSurface {
     /// Water above the texture. Units: mm. **Negative: the water stands inside the texture**, that far below its
     /// tops; −T without rain.
     ///
-    /// Error: 1e-13 of the depth plus the texture; model error 8–40 % (difference of the two fits).
+    /// Error: 5e-15 of the depth plus the texture; model error 8–40 % (difference of the two fits).
     ///
     /// # Errors
     /// When a value of the road or the rain (domain: [0, 500] mm/h) is outside its domain.

@@ -120,7 +120,7 @@ impl SheetFlow {
     }
 
     /// Depth at x, `time_s` after rain that had made the plane steady stopped. Units: m.
-    /// Times below 0 and NaN count as 0. Error: 2e-14 relative.
+    /// Times below 0 and NaN count as 0. Error: 1e-14 relative.
     #[must_use]
     pub fn recession_depth_m(&self, x_m: f64, time_s: f64) -> f64 {
         let steady = self.steady_depth_m(x_m);
@@ -141,7 +141,7 @@ impl SheetFlow {
     /// steady. Units: m.
     ///
     /// After short rain the depth i·duration moves down the plane unchanged until the recession from the steady part
-    /// above overtakes it, so it is the smaller of the two. Error: 2e-14 relative.
+    /// above overtakes it, so it is the smaller of the two. Error: 1e-14 relative.
     #[must_use]
     pub fn depth_m(&self, x_m: f64, time_s: f64, duration_s: f64) -> f64 {
         let duration = duration_s.max(0.0);

@@ -30,7 +30,7 @@ pub fn film_roughness(dry: f64, water: f64, film_mm: f64, texture_depth_mm: f64)
     dry * (1.0 - covered) + water * covered
 }
 
-/// [`film_roughness`] in single precision. Error: 6e-7.
+/// [`film_roughness`] in single precision. Error: 2e-7.
 #[must_use]
 pub fn film_roughness_f32(dry: f32, water: f32, film_mm: f32, texture_depth_mm: f32) -> f32 {
     let (dry, water) = (dry.max(0.0).min(1.0), water.max(0.0).min(1.0));

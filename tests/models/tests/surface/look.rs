@@ -345,7 +345,7 @@ fn water_is_smooth_and_waves_widen_it() {
             || format!("{h}"),
         );
     }
-    worst.assert_below(6e-7, 1000);
+    worst.assert_below(2e-7, 1000);
 }
 
 #[test]
