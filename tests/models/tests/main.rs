@@ -13,4 +13,5 @@ mod spectrum;
 mod splash;
 mod surface;
 mod waves;
+mod weather;
 mod wheels;

@@ -16,4 +16,5 @@ pub mod spectrum;
 pub mod splash;
 pub mod surface;
 pub mod waves;
+pub mod weather;
 pub mod wheels;
