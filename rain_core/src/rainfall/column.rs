@@ -21,14 +21,9 @@ pub struct ColumnDrop {
 #[must_use]
 pub fn column_drop(phase_turns: f64, speed_m_s: f64, time_s: f64, height_m: f64) -> ColumnDrop {
     let turns = phase_turns + speed_m_s * time_s / height_m;
-    if !turns.is_finite() || height_m <= 0.0 {
-        let height = if height_m > 0.0 && height_m.is_finite() {
-            height_m
-        } else {
-            0.0
-        };
+    if !turns.is_finite() || !height_m.is_finite() || height_m <= 0.0 {
         return ColumnDrop {
-            height_m: height,
+            height_m: if height_m.is_finite() { height_m.max(0.0) } else { 0.0 },
             fraction: 0.0,
             cycle: 0,
         };

@@ -250,7 +250,7 @@ fn time_of_way(c: f64, z: f64, u0: f64) -> f64 {
 /// Times in [0, 1e6] s, initial speeds up to 1000 v_t; clamps as at [`Fall`]; parameters outside their range, or NaN,
 /// count as the nearest bound.
 ///
-/// Error: 1e-6 of the speed and of the way against [`Fall::at`].
+/// Error: 2e-6 relative, of the speed and of the way, against [`Fall::at`].
 #[must_use]
 pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32) -> [f32; 2] {
     let within = |x: f32, min: f32, max: f32| if x > min { x.min(max) } else { min };
