@@ -81,7 +81,11 @@ impl FogFade {
         if !(dt_s > 0.0) {
             return;
         }
-        let change = if transition_s > 0.0 { dt_s / transition_s } else { 1.0 };
+        let change = if transition_s > 0.0 {
+            dt_s.min(1e9) / transition_s
+        } else {
+            1.0
+        };
         self.share = (self.share + if raining { change } else { -change }).clamp(0.0, 1.0);
     }
 }

@@ -6,6 +6,7 @@
 
 use super::fresnel::{fresnel_polarised, normal_reflectance};
 use super::refraction::index;
+use crate::quadrature::GaussLegendre;
 
 /// Shares of the light that hits a sphere, over its whole disc, unpolarised. Units: none; they add up to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,12 +53,7 @@ pub fn sphere_order_share(order: u32, index: f64) -> f64 {
         let f = fresnel_polarised(x * x, n);
         4.0 * x * x * x * 0.5 * (of(f.s) + of(f.p))
     };
-    const PANELS: u32 = 64;
-    let h = 1.0 / f64::from(2 * PANELS);
-    let inner: f64 = (1..2 * PANELS)
-        .map(|i| integrand(h * f64::from(i)) * if i % 2 == 1 { 4.0 } else { 2.0 })
-        .sum();
-    (integrand(0.0) + inner + integrand(1.0)) * h / 3.0
+    GaussLegendre::<16>::RULE.integrate_panels(0.0, 1.0, 4, integrand)
 }
 
 /// Light sent straight back per solid angle, over the square of the radius: F₀/4 + (1 − F₀)² F₀/(4/n − 2)².

@@ -4,6 +4,7 @@
 //! Smooth, loss-free, non-magnetic media of real index: exact. Water's index varies by 0.5 % over the visible; F₀ by 2 %.
 
 use crate::ops;
+use crate::quadrature::GaussLegendre;
 
 /// Smallest and largest relative index that is looked at; others count as these. Units: none.
 const INDEX_RANGE: [f64; 2] = [0.1, 10.0];
@@ -195,23 +196,17 @@ pub fn hemispherical_mean_inside(index: f64) -> f64 {
 
 /// 2∫F c dc with c = g sinh t, g = √(n² − 1): (γ − c)/(γ + c) = e^(−2t), so the integrand decays smoothly.
 fn mean_near_one(n: f64) -> f64 {
-    const PANELS: u32 = 100;
     let g2 = (n - 1.0) * (n + 1.0);
     let g = ops::sqrt(g2);
     // asinh(1/g); beyond t = 12 nothing is left of e^(−2t).
     let end = ops::ln((1.0 + ops::sqrt(1.0 + g2)) / g).min(12.0);
-    let integrand = |t: f64| {
+    GaussLegendre::<16>::RULE.integrate_panels(0.0, end, 4, |t| {
         let (up, down) = (ops::exp(t), ops::exp(-t));
         let (c, gamma) = (0.5 * g * (up - down), 0.5 * g * (up + down));
         let s = down * down * down * down;
         let ratio = (c * (gamma + c) - 1.0) / (c * (gamma - c) + 1.0);
         s * (1.0 + ratio * ratio) * c * gamma
-    };
-    let h = end / f64::from(2 * PANELS);
-    let inner: f64 = (1..2 * PANELS)
-        .map(|i| integrand(h * f64::from(i)) * if i % 2 == 1 { 4.0 } else { 2.0 })
-        .sum();
-    (integrand(0.0) + inner + integrand(end)) * h / 3.0
+    })
 }
 
 fn cosine(c: f64) -> f64 {
