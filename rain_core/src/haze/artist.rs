@@ -78,7 +78,7 @@ impl FogFade {
     ///
     /// Error: rounding.
     pub fn advance(&mut self, raining: bool, dt_s: f64, transition_s: f64) {
-        if !(dt_s > 0.0) {
+        if dt_s.is_nan() || dt_s <= 0.0 {
             return;
         }
         let change = if transition_s > 0.0 {

@@ -66,7 +66,7 @@ fn way(s: f64) -> f64 {
 /// Error: rounding.
 #[must_use]
 pub fn near_weight(distance_m: f64, range_m: f64) -> f64 {
-    if !(range_m >= MIN_RANGE_M) {
+    if range_m.is_nan() || range_m < MIN_RANGE_M {
         return 0.0;
     }
     ramp(distance_m, EYE_RAMP_M[0], EYE_RAMP_M[1]) - ramp(distance_m, 0.8 * range_m, 1.2 * range_m)
@@ -79,7 +79,7 @@ pub fn near_weight(distance_m: f64, range_m: f64) -> f64 {
 /// Error: 1e-14 of s against the integral.
 #[must_use]
 pub fn near_depth_m(way_m: f64, range_m: f64) -> f64 {
-    if !(range_m >= MIN_RANGE_M) {
+    if range_m.is_nan() || range_m < MIN_RANGE_M {
         return 0.0;
     }
     let range = range_m.min(MAX_WAY_M);

@@ -67,7 +67,7 @@ pub fn field_of_view_rad(index: f64) -> f64 {
 #[must_use]
 pub fn impact_of_deviation(deviation_rad: f64, index: f64) -> f64 {
     let n = self::index(index);
-    if !(deviation_rad > 0.0) || n == 1.0 {
+    if deviation_rad.is_nan() || deviation_rad <= 0.0 || n == 1.0 {
         return 0.0;
     }
     let half = 0.5 * deviation_rad;
@@ -115,7 +115,7 @@ pub fn rainbow(reflections: u32, index: f64) -> Option<Bow> {
     let k = f64::from(reflections.min(100));
     let cosine2 = (n - 1.0) * (n + 1.0) / (k * (k + 2.0));
     // Also k = 0, where the quotient is infinite or not a number.
-    if !(cosine2 < 1.0) {
+    if cosine2.is_nan() || cosine2 >= 1.0 {
         return None;
     }
     let impact = ops::sqrt(1.0 - cosine2);

@@ -329,7 +329,13 @@ fn volume_ratio(a: &[f64; OUTLINE_TERMS]) -> f64 {
             square[i.abs_diff(j)] += 0.5 * p * q;
         }
     }
-    let mean = |n: usize| if n % 2 == 0 { 1.0 / (1.0 - (n * n) as f64) } else { 0.0 };
+    let mean = |n: usize| {
+        if n.is_multiple_of(2) {
+            1.0 / (1.0 - (n * n) as f64)
+        } else {
+            0.0
+        }
+    };
     let mut volume = 0.0;
     for (i, p) in square.iter().enumerate() {
         for (j, q) in a.iter().enumerate() {

@@ -68,7 +68,7 @@ pub fn streak_opacity(across_m: f64, along_m: f64, diameter_m: f64, path_m: f64)
     }
     let chord = ops::sqrt(square);
     let (from, to) = (along_m - chord, along_m + chord);
-    if !(path_m > 0.0) {
+    if path_m.is_nan() || path_m <= 0.0 {
         return if from <= 0.0 && to >= 0.0 { 1.0 } else { 0.0 };
     }
     let share = (to.min(path_m) - from.max(0.0)) / path_m;
@@ -87,7 +87,7 @@ pub fn streak_opacity_f32(across: f32, along: f32, diameter: f32, path: f32) -> 
     }
     let chord = square.sqrt();
     let (from, to) = (along - chord, along + chord);
-    if !(path > 0.0) {
+    if path.is_nan() || path <= 0.0 {
         return if from <= 0.0 && to >= 0.0 { 1.0 } else { 0.0 };
     }
     // Mid-streak the two ends do not matter: their difference would cost digits.
@@ -178,7 +178,7 @@ impl ScreenStreak {
 #[must_use]
 pub fn clip_to_near(head: Vec3, tail: Vec3, near_m: f32) -> Option<(Vec3, Vec3, f32)> {
     let (head_in, tail_in) = (-head.z >= near_m, -tail.z >= near_m);
-    if !(near_m > 0.0) {
+    if near_m.is_nan() || near_m <= 0.0 {
         return None;
     }
     if head_in && tail_in {

@@ -136,10 +136,10 @@ impl Weights {
 /// Error: 3e-7 of the larger speed against the double form.
 #[must_use]
 pub fn relax_f32(velocity_m_s: f32, wind_m_s: f32, response_time_s: f32, dt_s: f32) -> f32 {
-    if !(dt_s > 0.0) {
+    if dt_s.is_nan() || dt_s <= 0.0 {
         return velocity_m_s;
     }
-    if !(response_time_s > 0.0) {
+    if response_time_s.is_nan() || response_time_s <= 0.0 {
         return wind_m_s;
     }
     velocity_m_s + (wind_m_s - velocity_m_s) * -ops::exp_m1f(-dt_s / response_time_s)

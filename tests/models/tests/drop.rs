@@ -190,7 +190,7 @@ fn normals_are_the_slopes_of_the_outline() {
     for d in [0.5, 1.5, 3.0, 4.4, 6.0] {
         let outline = DropOutline::new(d);
         let slow = reference::scaled_radius(d);
-        for theta in angles(50).filter(|t| *t > 0.0 && *t < 3.14) {
+        for theta in angles(50).filter(|t| *t > 0.0 && *t < 3.1) {
             let [x, y] = reference::normal(&slow, theta);
             let normal = outline.normal(theta.cos());
             let place = || format!("{d} mm at {theta}");

@@ -113,7 +113,7 @@ proptest! {
         let exact = FRAC_PI_4 * f64::from(d * focal).powi(2) / (f64::from(start) * f64::from(end));
         prop_assert!((f64::from(streak.sum_px2()) / exact - 1.0).abs() < 2e-6);
         prop_assert!((f64::from(streak.blurred(blur).sum_px2()) / exact - 1.0).abs() < 3e-6);
-        prop_assert!(streak.width_px >= 1.0 && streak.length_px >= streak.width_px && streak.opacity <= 0.7854);
+        prop_assert!(streak.width_px >= 1.0 && streak.length_px >= streak.width_px && f64::from(streak.opacity) <= FRAC_PI_4 + 1e-6);
         // Seen from the other end of time it is the same streak.
         let back = ScreenStreak::project(tail, head, d, focal, 0.1).expect("in view");
         prop_assert!(back.head_px == streak.tail_px && back.opacity == streak.opacity);
@@ -165,7 +165,7 @@ fn a_thin_streak_is_one_pixel_wide_and_as_much_fainter() {
         thin.length_px
     );
     // Peak contrast of the rule c = (π/4)(D/(vT))(D f/z), for streaks long against the drop.
-    assert!((thin.opacity / (0.785_398 * (1e-3 / 0.067) * 0.062_35) - 1.0).abs() < 0.02);
+    assert!((thin.opacity / (core::f32::consts::FRAC_PI_4 * (1e-3 / 0.067) * 0.062_35) - 1.0).abs() < 0.02);
     // A camera that falls with the drop sees a disc, not a line.
     let dot = ScreenStreak::project(-Vec3::Z, -Vec3::Z, 4e-3, 623.5, 0.1).expect("in view");
     assert!((dot.opacity - core::f32::consts::FRAC_PI_4).abs() < 1e-6 && dot.length_px == dot.width_px);
