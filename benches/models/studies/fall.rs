@@ -47,7 +47,7 @@ fn over_height() -> Study {
         .flat_map(|&d| reference::speeds_at(d, reference::measured_speed(d), &HEIGHTS, 1e-3))
         .collect();
     let mut variants = vec![
-        fall_variant("c(D), Newton on z(t)", &truth, |[terminal, d, z]| {
+        fall_variant("c(D), Halley on z(t)", &truth, |[terminal, d, z]| {
             Fall::new(terminal, drag_stiffness(d)).map_or(f64::NAN, |fall| fall.speed_after_m_s(z, 0.0))
         })
         .default(),
@@ -103,8 +103,9 @@ fn stepped(dt: f64) -> impl Fn([f64; 3]) -> f64 {
         let h = time / steps;
         let (mut v, mut z) = (0.0, 0.0);
         for _ in 0..steps as u32 {
-            z += v * h;
+            let before = v;
             v += h * 9.80665 * (1.0 - v / terminal) * (1.0 + c * v / terminal);
+            z += 0.5 * (before + v) * h;
         }
         z
     }

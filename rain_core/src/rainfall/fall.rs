@@ -101,9 +101,10 @@ impl Fall {
     pub fn at(&self, time_s: f64, initial_m_s: f64) -> FallState {
         let tau = within(time_s, MAX_FALL_TIME_S) * GRAVITY / self.terminal_m_s;
         let u0 = self.ratio(initial_m_s);
+        let [u, z] = motion(self.stiffness, tau, u0);
         FallState {
-            speed_m_s: self.terminal_m_s * speed_ratio(self.stiffness, tau, u0),
-            distance_m: self.length_m() * way(self.stiffness, tau, u0),
+            speed_m_s: self.terminal_m_s * u,
+            distance_m: self.length_m() * z,
         }
     }
 
@@ -119,11 +120,11 @@ impl Fall {
         self.at(time_s, initial_m_s).distance_m
     }
 
-    /// Time to fall `height_m` from `initial_m_s`: Newton's rule on the closed z(t), kept inside bounds. Units: s.
+    /// Time to fall `height_m` from `initial_m_s`: Halley's rule on the closed z(t), kept inside bounds. Units: s.
     #[must_use]
     pub fn time_to_fall_s(&self, height_m: f64, initial_m_s: f64) -> f64 {
         let z = within(height_m, MAX_FALL_HEIGHT_M) / self.length_m();
-        time_of_way(self.stiffness, z, self.ratio(initial_m_s)) * self.terminal_m_s / GRAVITY
+        arrival(self.stiffness, z, self.ratio(initial_m_s))[0] * self.terminal_m_s / GRAVITY
     }
 
     /// Speed after a fall of `height_m` from `initial_m_s`. Units: m/s.
@@ -136,7 +137,7 @@ impl Fall {
         let u = if self.stiffness == 1.0 {
             quadratic_speed_ratio(z, u0)
         } else {
-            speed_ratio(self.stiffness, time_of_way(self.stiffness, z, u0), u0)
+            arrival(self.stiffness, z, u0)[1]
         };
         self.terminal_m_s * u
     }
@@ -182,13 +183,23 @@ fn within(x: f64, max: f64) -> f64 {
     if x > 0.0 { x.min(max) } else { 0.0 }
 }
 
-/// u(τ) from u₀. Only decaying exponentials and sums of positive terms: nothing overflows or cancels.
-fn speed_ratio(c: f64, tau: f64, u0: f64) -> f64 {
+/// u and z at τ from u₀. Only decaying exponentials and sums of positive terms: nothing overflows or cancels.
+fn motion(c: f64, tau: f64, u0: f64) -> [f64; 2] {
     let b = 1.0 + c;
     let passed = -ops::exp_m1(-b * tau);
     let start = b * (1.0 - passed);
     // u = (1 − κE)/(1 + cκE) with κ = (1 − u₀)/(1 + c u₀), both multiplied by 1 + c u₀.
-    (passed * (1.0 + c * u0) + start * u0) / (passed * (1.0 + c * u0) + start)
+    let gain = passed * (1.0 + c * u0);
+    let u = (gain + start * u0) / (gain + start);
+    let z = if tau * b < 1.0 {
+        // e^(cz) − 1 as a sum in which the leading terms of both exponentials have been taken out.
+        let (own, stokes) = (second_remainder(c * tau), second_remainder(-tau));
+        let sum = c * tau * (u0 + tau * (c * (1.0 + c * u0) * own + (1.0 - u0) * stokes) / b);
+        ops::ln_1p(sum) / c
+    } else {
+        tau + ops::ln_1p(c * (u0 - 1.0) * passed / b) / c
+    };
+    [u, z]
 }
 
 /// u at z for c = 1, without time.
@@ -197,51 +208,39 @@ fn quadratic_speed_ratio(z: f64, u0: f64) -> f64 {
     ops::sqrt(u0 * u0 * (1.0 - passed) + passed)
 }
 
-/// z(τ) = ∫ u dτ from u₀.
-fn way(c: f64, tau: f64, u0: f64) -> f64 {
-    let b = 1.0 + c;
-    if tau * b < 1.0 {
-        // e^(cz) − 1 as a sum in which the leading terms of both exponentials have been taken out.
-        let sum = c * tau * u0
-            + c * tau * tau * (c * (1.0 + c * u0) * second_remainder(c * tau) + (1.0 - u0) * second_remainder(-tau))
-                / b;
-        return ops::ln_1p(sum) / c;
-    }
-    let mean = -ops::exp_m1(-b * tau) / b;
-    tau + ops::ln_1p(c * (u0 - 1.0) * mean) / c
-}
-
 /// (eˣ − 1 − x)/x² for |x| ≤ 1.
 fn second_remainder(x: f64) -> f64 {
     // Taylor: the last factor is 1/20 of 1/19!, below 1e-18.
     (3..=19).rev().fold(1.0, |sum, k| 1.0 + x / f64::from(k) * sum) / 2.0
 }
 
-/// τ with z(τ) = z.
-fn time_of_way(c: f64, z: f64, u0: f64) -> f64 {
+/// τ with z(τ) = z, and u there.
+fn arrival(c: f64, z: f64, u0: f64) -> [f64; 2] {
     if z <= 0.0 {
-        return 0.0;
+        return [0.0, u0];
     }
     // u lies between u₀ and 1: so does z/τ.
     let latest = z + ops::ln_1p(c) / c;
     let (mut low, mut high) = (z / u0.max(1.0), if u0 >= 1.0 { z } else { latest.min(z / u0) });
     let mut tau = (2.0 * z / (u0 + quadratic_speed_ratio(z, u0))).clamp(low, high);
-    // z(τ) is convex or concave: Newton's rule converges from one side; the bounds only guard its first step.
+    // Halley's rule, whose second derivative is the drag law itself; the bounds guard its first steps.
     for _ in 0..60 {
-        let excess = way(c, tau, u0) - z;
+        let [u, way] = motion(c, tau, u0);
+        let excess = way - z;
         if excess > 0.0 {
             high = tau;
         } else {
             low = tau;
         }
-        let next = (tau - excess / speed_ratio(c, tau, u0)).clamp(low, high);
-        // The rule squares its error: what follows would change nothing.
-        if (next - tau).abs() <= 1e-8 * tau {
-            return next;
+        let bend = (1.0 - u) * (1.0 + c * u);
+        let next = (tau - 2.0 * excess * u / (2.0 * u * u - excess * bend)).clamp(low, high);
+        // The rule cubes its error: another step would change nothing.
+        if (next - tau).abs() <= 1e-5 * tau {
+            return [next, motion(c, next, u0)[0]];
         }
         tau = next;
     }
-    tau
+    [tau, motion(c, tau, u0)[0]]
 }
 
 /// Speed (m/s) and way (m) after `time_s` in single precision, for a drop with terminal speed `terminal_m_s` (m/s, at
