@@ -65,6 +65,16 @@ pub fn expf(x: f32) -> f32 {
 pub fn lnf(x: f32) -> f32 {
     libm::logf(x)
 }
+/// Angle in [−π/2, π/2] whose sine is x.
+#[must_use]
+pub fn asin(x: f64) -> f64 {
+    libm::asin(x)
+}
+/// Angle in [0, π] whose cosine is x.
+#[must_use]
+pub fn acos(x: f64) -> f64 {
+    libm::acos(x)
+}
 /// e^x − 1 without cancellation, in single precision.
 #[must_use]
 pub fn exp_m1f(x: f32) -> f32 {
