@@ -57,7 +57,11 @@ impl Field {
                 if self.z[cell].is_nan() || filled[cell] == self.z[cell] {
                     continue;
                 }
-                let lowest = self.neighbours(cell).iter().map(|&other| filled[other]).fold(f64::INFINITY, f64::min);
+                let lowest = self
+                    .neighbours(cell)
+                    .iter()
+                    .map(|&other| filled[other])
+                    .fold(f64::INFINITY, f64::min);
                 let level = self.z[cell].max(lowest);
                 if level < filled[cell] {
                     filled[cell] = level;
@@ -127,7 +131,10 @@ impl Field {
             for &cell in &flat {
                 seen[cell] = true;
                 shut &= !self.is_outlet(cell);
-                shut &= self.neighbours(cell).iter().all(|&other| self.z[other] >= self.z[start]);
+                shut &= self
+                    .neighbours(cell)
+                    .iter()
+                    .all(|&other| self.z[other] >= self.z[start]);
             }
             if shut {
                 pits.push(flat);
@@ -179,7 +186,12 @@ impl Flooded {
         let mut at = cell;
         while volume > 0.0 {
             if self.surface[at] == self.field.z[at] {
-                if self.field.neighbours(at).iter().any(|&other| self.field.z[other].is_nan()) {
+                if self
+                    .field
+                    .neighbours(at)
+                    .iter()
+                    .any(|&other| self.field.z[other].is_nan())
+                {
                     self.left += volume;
                     return;
                 }
@@ -220,7 +232,8 @@ impl Flooded {
         let mut best = None;
         let mut steepest = 0.0;
         for other in self.field.neighbours(cell) {
-            let diagonal = other % self.field.nx != cell % self.field.nx && other / self.field.nx != cell / self.field.nx;
+            let diagonal =
+                other % self.field.nx != cell % self.field.nx && other / self.field.nx != cell / self.field.nx;
             let slope = (level - self.field.z[other]) / if diagonal { 2f64.sqrt() } else { 1.0 };
             if self.surface[other] < level && slope > steepest {
                 steepest = slope;

@@ -88,11 +88,7 @@ fn downhill_at_border(grid: &Grid, cell: usize, open: bool) -> u32 {
     grid.neighbours(cell, |other| {
         beside_hole |= grid.heights[other].is_nan();
         let straight = other % grid.nx == cell % grid.nx || other / grid.nx == cell / grid.nx;
-        let weight = if straight {
-            1.0
-        } else {
-            DIAGONAL
-        };
+        let weight = if straight { 1.0 } else { DIAGONAL };
         let drop = (height - grid.heights[other]) * weight;
         if drop > best.0 {
             best = (drop, other as u32);

@@ -154,9 +154,15 @@ pub(super) fn passes(grid: &Grid, catchments: &Catchments, open: bool) -> Vec<Pa
         let rows = (0..nx).chain((nz - 1) * nx..nz * nx);
         let columns = (0..nz).flat_map(|row| [row * nx, row * nx + nx - 1]);
         for cell in rows.chain(columns) {
-            if labels[cell] != OUT {
-                table.offer(labels[cell], OUT, heights[cell], cell as u32, f64::INFINITY);
-            }
+            let height = heights[cell];
+            let mut leave = |from: usize| {
+                if labels[from] != OUT && heights[from] <= height {
+                    table.offer(labels[from], OUT, height, cell as u32, f64::INFINITY);
+                }
+            };
+            // Rain on the cell may run inwards, but a pool that reaches it leaves the map.
+            leave(cell);
+            grid.neighbours(cell, leave);
         }
     }
     table.sorted()

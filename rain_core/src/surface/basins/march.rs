@@ -148,28 +148,23 @@ impl Pool<'_> {
                 self.above(down, knot)
             };
             let change = area * (knot - depth);
+            // What the drains took is what is missing; below their level nothing, whatever rounding says.
+            let drains = from.flow > 0.0 || to.flow > 0.0;
+            let taken = |missing: f64| if drains && missing > 0.0 { missing } else { 0.0 };
             let left = time_limit - done.time;
             let needed = time_to(change, from.rate, to.rate);
             let supply = self.inflow + self.per_area * area;
             if needed > left || needed.is_nan() {
                 let moved = moved(change, from.rate, to.rate, left);
                 done.area_time += area * left;
-                done.drained += if self.own_drains.is_empty() {
-                    0.0
-                } else {
-                    supply * left - moved
-                };
+                done.drained += taken(supply * left - moved);
                 done.time = time_limit;
                 (done.area, done.flow) = (area, from.flow);
                 return done;
             }
             done.time += needed;
             done.area_time += area * needed;
-            done.drained += if self.own_drains.is_empty() {
-                0.0
-            } else {
-                supply * needed - change
-            };
+            done.drained += taken(supply * needed - change);
             depth = knot;
             up = curve.depths.partition_point(|&knot| knot <= depth);
         }

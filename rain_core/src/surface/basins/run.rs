@@ -73,10 +73,12 @@ pub struct BasinRun {
     basins: Arc<Basins>,
     state: BasinState,
     forcing: BasinForcing,
-    /// Share of the rain that reaches each leaf; of a parent the mean over its catchment.
+    /// Share of the rain that reaches each leaf; of a parent the mean over the part of its catchment that lies above
+    /// its children's brim.
     exposure: Vec<f64>,
-    /// Catchments times exposure. Units: m².
+    /// Catchments times exposure, and the children's areas times theirs. Units: m².
     exposed: Vec<f64>,
+    exposed_base: Vec<f64>,
     drain_starts: Vec<u32>,
     drains_of: Vec<u32>,
     /// Of the step at hand, for each basin: what others spill into it (m³/s), how many do, what it spills, how far it
@@ -147,6 +149,7 @@ impl BasinRun {
             forcing: BasinForcing::default(),
             exposure: vec![1.0; count],
             exposed: vec![0.0; count],
+            exposed_base: vec![0.0; count],
             drain_starts: starts,
             drains_of,
             received: vec![0.0; count],
@@ -213,15 +216,31 @@ impl BasinRun {
 
     /// Children come before parents.
     fn sum_exposure(&mut self) {
-        for (index, basin) in self.basins.basins().iter().enumerate() {
-            let area = basin.catchment_m2;
-            if let Some(children) = basin.children {
-                self.exposed[index] = children.iter().map(|&child| self.exposed[child as usize]).sum();
-                self.exposure[index] = if area > 0.0 { self.exposed[index] / area } else { 0.0 };
-            } else {
-                self.exposed[index] = self.exposure[index] * area;
-            }
+        let basins = Arc::clone(&self.basins);
+        let areas = |index: usize| basins.basins()[index].area_m2;
+        for (index, basin) in basins.basins().iter().enumerate() {
+            let Some(children) = basin.children else {
+                self.exposed[index] = self.exposure[index] * basin.catchment_m2;
+                continue;
+            };
+            let [a, b] = children.map(|child| child as usize);
+            self.exposed[index] = self.exposed[a] + self.exposed[b];
+            self.exposed_base[index] = self.exposed_water(a, areas(a)) + self.exposed_water(b, areas(b));
+            let rest = basin.catchment_m2 - areas(a) - areas(b);
+            let exposed_rest = (self.exposed[index] - self.exposed_base[index]).max(0.0);
+            self.exposure[index] = if rest > 0.0 { exposed_rest / rest } else { 0.0 };
         }
+    }
+
+    /// Wet area times exposure: the children's own shares, then the mean of the rest. Units: m².
+    fn exposed_water(&self, basin: usize, area: f64) -> f64 {
+        let base = self.basins.basins()[basin].children.map_or(0.0, |children| {
+            children
+                .iter()
+                .map(|&child| self.basins.basins()[child as usize].area_m2)
+                .sum()
+        });
+        self.exposed_base[basin] + self.exposure[basin] * (area - base)
     }
 
     /// Water in a basin: all of it if it is a pool of its own or in several, what it holds when full if it is part of a
@@ -427,20 +446,28 @@ impl BasinRun {
         totals.left.add(self.rates.left * time);
     }
 
-    /// Rain that each wet square metre gets in excess of the runoff. Units: m/s.
-    fn direct(&self, pool: u32) -> f64 {
-        self.exposure[pool as usize] * (self.forcing.rain_m_s - self.forcing.runoff_m_s)
+    /// Rain on a wet area in excess of its runoff, whatever its size (m³/s) and for each square metre (m/s).
+    fn direct(&self, pool: u32) -> (f64, f64) {
+        let excess = self.forcing.rain_m_s - self.forcing.runoff_m_s;
+        if excess == 0.0 {
+            return (0.0, 0.0);
+        }
+        (
+            excess * self.exposed_water(pool as usize, 0.0),
+            excess * self.exposure[pool as usize],
+        )
     }
 
     fn pool(&self, pool: u32) -> Pool<'_> {
         let at = pool as usize;
+        let (fixed, direct) = self.direct(pool);
         Pool {
             curve: self.basins.curve(pool),
             bottom: self.basins.basins()[at].bottom_m,
             drains: self.basins.drains(),
             own_drains: &self.drains_of[self.drain_starts[at] as usize..self.drain_starts[at + 1] as usize],
-            inflow: self.forcing.runoff_m_s * self.exposed[at] + self.received[at],
-            per_area: self.direct(pool) - self.forcing.evaporation_m_s - self.forcing.seepage_m_s,
+            inflow: self.forcing.runoff_m_s * self.exposed[at] + fixed + self.received[at],
+            per_area: direct - self.forcing.evaporation_m_s - self.forcing.seepage_m_s,
             area_matters: self.forcing.needs_area(),
         }
     }
@@ -479,7 +506,8 @@ impl BasinRun {
 
     fn book(&mut self, pool: u32, time: f64, march: &March) {
         let at = pool as usize;
-        let (runoff, direct) = (self.forcing.runoff_m_s * self.exposed[at], self.direct(pool));
+        let (fixed, direct) = self.direct(pool);
+        let runoff = self.forcing.runoff_m_s * self.exposed[at] + fixed;
         let (evaporation, seepage) = (self.forcing.evaporation_m_s, self.forcing.seepage_m_s);
         let leaves = self.basins.basins()[at].overflows_to.is_none();
         let rain = runoff * time + direct * march.area_time;
@@ -504,6 +532,19 @@ impl BasinRun {
         totals.evaporated.add(evaporated);
         totals.infiltrated.add(infiltrated);
         totals.drained.add(march.drained);
+        let short = -volume.total();
+        if short > 0.0 {
+            // Rounding took more than there was.
+            let taker = if evaporation > 0.0 {
+                &mut totals.evaporated
+            } else if seepage > 0.0 {
+                &mut totals.infiltrated
+            } else {
+                &mut totals.drained
+            };
+            volume.add(short);
+            taker.add(-short);
+        }
         let rates = &mut self.rates;
         rates.rain += runoff + direct * march.area;
         rates.evaporated += evaporation * march.area;
@@ -590,7 +631,10 @@ impl BasinRun {
     fn net_when_full(&self, pool: u32) -> (f64, f64) {
         let model = self.pool(pool);
         let (net, area, flow) = model.full();
-        let gross = model.inflow + model.per_area.abs() * area + flow;
+        let forcing = &self.forcing;
+        let rain = (forcing.rain_m_s + forcing.runoff_m_s) * self.exposed[pool as usize];
+        let losses = (forcing.evaporation_m_s + forcing.seepage_m_s) * area + flow;
+        let gross = rain + self.received[pool as usize] + losses;
         (if net.abs() <= EQUAL * gross { 0.0 } else { net }, gross)
     }
 
