@@ -12,3 +12,7 @@ pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 pub const WATER_IOR: f64 = 1.333;
 /// 1 mm/h in m/s.
 pub const M_S_PER_MM_H: f64 = 1.0 / 3.6e6;
+/// Surface tension of water against air at 20 °C. Units: N/m. Source: Pruppacher & Klett 1997, rounded.
+pub const WATER_SURFACE_TENSION: f64 = 0.0728;
+/// Kinematic viscosity of water at 20 °C. Units: m²/s. Source: Pruppacher & Klett 1997.
+pub const WATER_KINEMATIC_VISCOSITY: f64 = 1.004e-6;

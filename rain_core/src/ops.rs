@@ -65,3 +65,23 @@ pub fn expf(x: f32) -> f32 {
 pub fn lnf(x: f32) -> f32 {
     libm::logf(x)
 }
+/// Hyperbolic tangent; ±1 for large arguments.
+#[must_use]
+pub fn tanh(x: f64) -> f64 {
+    libm::tanh(x)
+}
+/// Hyperbolic tangent in single precision; ±1 for large arguments.
+#[must_use]
+pub fn tanhf(x: f32) -> f32 {
+    libm::tanhf(x)
+}
+/// e^x − 1 without cancellation, in single precision.
+#[must_use]
+pub fn exp_m1f(x: f32) -> f32 {
+    libm::expm1f(x)
+}
+/// Error function.
+#[must_use]
+pub fn erf(x: f64) -> f64 {
+    libm::erf(x)
+}
