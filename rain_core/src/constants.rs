@@ -25,4 +25,7 @@ pub const WATER_VISCOSITY: f64 = 1.002e-3;
 /// Surface tension of water used for drops, waves and splashes. Units: N/m. Source: Pruppacher & Klett 1997, near 20 °C.
 pub const SURFACE_TENSION: f64 = 0.0728;
 /// Kinematic viscosity of water at 20 °C. Units: m²/s.
+/// Surface tension of water against air at 20 °C. Units: N/m. Source: Pruppacher & Klett 1997, rounded.
+pub const WATER_SURFACE_TENSION: f64 = 0.0728;
+/// Kinematic viscosity of water at 20 °C. Units: m²/s. Source: Pruppacher & Klett 1997.
 pub const WATER_KINEMATIC_VISCOSITY: f64 = 1.004e-6;
