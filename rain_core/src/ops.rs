@@ -74,6 +74,7 @@ pub fn asin(x: f64) -> f64 {
 #[must_use]
 pub fn acos(x: f64) -> f64 {
     libm::acos(x)
+}
 /// Hyperbolic tangent; ±1 for large arguments.
 #[must_use]
 pub fn tanh(x: f64) -> f64 {
@@ -103,6 +104,7 @@ pub fn cbrtf(x: f32) -> f32 {
 #[must_use]
 pub fn ln_gamma(x: f64) -> f64 {
     libm::lgamma(x)
+}
 /// Error function.
 #[must_use]
 pub fn erf(x: f64) -> f64 {

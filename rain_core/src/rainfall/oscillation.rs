@@ -8,7 +8,7 @@ use core::f64::consts::TAU;
 
 use super::column::fract;
 use super::shape::DropOutline;
-use crate::constants::{SURFACE_TENSION, WATER_DENSITY, WATER_KINEMATIC_VISCOSITY};
+use crate::constants::{WATER_SURFACE_TENSION, WATER_DENSITY, WATER_KINEMATIC_VISCOSITY};
 use crate::ops;
 
 /// Frequency of mode n of a free drop, (1/2π)√(n(n−1)(n+2)σ/(ρ_w a³)), a = D/2. Units: Hz.
@@ -21,7 +21,7 @@ use crate::ops;
 pub fn mode_frequency_hz(mode: u32, diameter_mm: f64) -> f64 {
     let a = radius_m(diameter_mm);
     let n = f64::from(mode.min(100));
-    let stiffness = n * (n - 1.0).max(0.0) * (n + 2.0) * SURFACE_TENSION;
+    let stiffness = n * (n - 1.0).max(0.0) * (n + 2.0) * WATER_SURFACE_TENSION;
     ops::sqrt(stiffness / (WATER_DENSITY * a * a * a)) / TAU
 }
 

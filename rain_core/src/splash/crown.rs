@@ -2,7 +2,7 @@
 
 use super::numbers::{FASTEST_M_S, LARGEST_MM, impact_energy_j};
 use super::threshold::splash_excess;
-use crate::constants::{GRAVITY, SURFACE_TENSION, WATER_DENSITY};
+use crate::constants::{GRAVITY, WATER_SURFACE_TENSION, WATER_DENSITY};
 use crate::error::{clamped, clamped_f32};
 use crate::ops;
 
@@ -46,7 +46,7 @@ pub fn crown_radius_m_f32(diameter_mm: f32, speed_m_s: f32, film_mm: f32, time_s
 #[must_use]
 pub fn crown_life_s(diameter_mm: f64) -> f64 {
     let d = clamped(diameter_mm, 0.0, LARGEST_MM) * 1e-3;
-    ops::sqrt(WATER_DENSITY * d * d * d / SURFACE_TENSION).clamp(LIVES_S.0, LIVES_S.1)
+    ops::sqrt(WATER_DENSITY * d * d * d / WATER_SURFACE_TENSION).clamp(LIVES_S.0, LIVES_S.1)
 }
 
 /// How much of a crown is left: 1 in the first half of its life, then smoothly to 0. Units: none, [0, 1].

@@ -1,6 +1,6 @@
 //! What an impact is made of: dimensionless numbers, mass, momentum, energy.
 
-use crate::constants::{SURFACE_TENSION, WATER_DENSITY, WATER_VISCOSITY};
+use crate::constants::{WATER_SURFACE_TENSION, WATER_DENSITY, WATER_VISCOSITY};
 use crate::error::{clamped, clamped_f32};
 use crate::ops;
 
@@ -31,9 +31,9 @@ impl ImpactNumbers {
     pub fn new(diameter_mm: f64, speed_m_s: f64) -> Self {
         let d = clamped(diameter_mm, 0.0, LARGEST_MM) * 1e-3;
         let v = clamped(speed_m_s, 0.0, FASTEST_M_S);
-        let weber = WATER_DENSITY * v * v * d / SURFACE_TENSION;
+        let weber = WATER_DENSITY * v * v * d / WATER_SURFACE_TENSION;
         let reynolds = WATER_DENSITY * v * d / WATER_VISCOSITY;
-        let mass = WATER_DENSITY * SURFACE_TENSION * d;
+        let mass = WATER_DENSITY * WATER_SURFACE_TENSION * d;
         Self {
             weber,
             reynolds,
@@ -58,7 +58,7 @@ pub fn splash_k(diameter_mm: f64, speed_m_s: f64) -> f64 {
 /// [`splash_k`] in single precision. Error: 3e-7 relative.
 #[must_use]
 pub fn splash_k_f32(diameter_mm: f32, speed_m_s: f32) -> f32 {
-    const WEBER: f32 = (WATER_DENSITY / SURFACE_TENSION * 1e-3) as f32;
+    const WEBER: f32 = (WATER_DENSITY / WATER_SURFACE_TENSION * 1e-3) as f32;
     const REYNOLDS: f32 = (WATER_DENSITY / WATER_VISCOSITY * 1e-3) as f32;
     let d = clamped_f32(diameter_mm, 0.0, LARGEST_MM as f32);
     let v = clamped_f32(speed_m_s, 0.0, FASTEST_M_S as f32);
