@@ -73,8 +73,8 @@ impl ImpactFlux {
         if b <= a || approach(0.5 * (a + b)) <= 0.0 {
             return;
         }
-        // Panels of a fiftieth of a millimetre or an eightieth of the decay length, whichever is shorter.
-        let width = 0.02_f64.min(0.0125 * 4.0 / spectrum.slope_per_mm);
+        // Panels short against the decay length and against the bends of the fall speed's fit.
+        let width = 0.05_f64.min(0.1 / spectrum.slope_per_mm);
         let panels = ((b - a) / width).ceil().clamp(2.0, 4000.0) as u32;
         let h = (b - a) / f64::from(2 * panels);
         for i in 0..=2 * panels {
