@@ -77,7 +77,7 @@ fn store() -> Study {
             &drying,
             CAPACITY_MM,
             [light, EVAPORATION_MM_H],
-            dt * 20.0,
+            dt * 5.0,
         ));
         Variant::new(name, error, 64, move || {
             (0..64)
