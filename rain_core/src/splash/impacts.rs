@@ -6,8 +6,10 @@ use super::numbers::water_drop_kg;
 use super::threshold::splash_threshold_diameter_mm;
 use crate::rainfall::{MAX_FITTED_DIAMETER_MM, Spectrum, terminal_velocity};
 
-/// Largest diameter summed: beyond it lies less than 1e-9 of the number and 1e-4 of the energy of 500 mm/h. Units: mm.
-const END_MM: f64 = 16.0;
+/// Largest diameter that counts. Units: mm.
+const END_MM: f64 = 100.0;
+/// Sums end this many decay lengths up: e^(−45) D³ is below 1e-15 of any of them.
+const END_DECAYS: f64 = 45.0;
 /// Fastest wind that counts. Units: m/s.
 const FASTEST_WIND_M_S: f64 = 100.0;
 
@@ -31,7 +33,7 @@ pub struct ImpactFlux {
 }
 
 impl ImpactFlux {
-    /// Of the drops of `spectrum` between `min_mm` and `max_mm` (held in [0, 16] mm) on a surface with `normal`, in
+    /// Of the drops of `spectrum` between `min_mm` and `max_mm` (held in [0, 100] mm) on a surface with `normal`, in
     /// `wind_m_s` (held at 100 m/s). A vector that is not finite counts as still air or as level ground, a diameter
     /// that is not a number as 0.
     #[must_use]
@@ -43,7 +45,7 @@ impl ImpactFlux {
         };
         let normal = normal.try_normalize().unwrap_or(DVec3::Y);
         let from = crate::error::clamped(min_mm, 0.0, END_MM);
-        let to = crate::error::clamped(max_mm, 0.0, END_MM);
+        let to = crate::error::clamped(max_mm, 0.0, END_MM).min(from + END_DECAYS / spectrum.slope_per_mm);
         // Where the approach changes sign, and where the fall speed's fit has its corner: the integrand is smooth between.
         let approach = |d: f64| terminal_velocity(d) * normal.y - wind.dot(normal);
         let mut borders = [from, to, to];
@@ -73,8 +75,9 @@ impl ImpactFlux {
         if b <= a || approach(0.5 * (a + b)) <= 0.0 {
             return;
         }
-        // Panels of a fiftieth of a millimetre or an eightieth of the decay length, whichever is shorter.
-        let width = 0.02_f64.min(0.0125 * 4.0 / spectrum.slope_per_mm);
+        // Panels short against the decay length and against the bends of the fall speed's fit.
+        let bend = if a < MAX_FITTED_DIAMETER_MM { 0.05 } else { 1.0 };
+        let width = (0.1 / spectrum.slope_per_mm).min(bend);
         let panels = ((b - a) / width).ceil().clamp(2.0, 4000.0) as u32;
         let h = (b - a) / f64::from(2 * panels);
         for i in 0..=2 * panels {

@@ -38,7 +38,9 @@ fn film_share(diameter_mm: f64, film_mm: f64) -> f64 {
 /// `film_mm` in [0, 1e6]; what is not a number counts as 0. Error: rounding; smooth walls, rough ground splashes earlier.
 #[must_use]
 pub fn splash_threshold_k(diameter_mm: f64, film_mm: f64) -> f64 {
-    ops::pow(threshold(film_share(diameter_mm, film_mm)), 0.625)
+    // x^(5/8) by roots: a tenth of a power's cost.
+    let root = ops::sqrt(threshold(film_share(diameter_mm, film_mm)));
+    root * ops::sqrt(ops::sqrt(root))
 }
 
 /// K of an impact over the K at which a drop of its size splashes: a splash where it is above 1. Units: none.
@@ -65,7 +67,8 @@ pub fn splash_excess_f32(diameter_mm: f32, speed_m_s: f32, film_mm: f32) -> f32 
     } else {
         2100.0 + 5880.0 * ops::expf(1.44 * ops::lnf(delta.min(thick)))
     };
-    splash_k_f32(d, speed_m_s) / ops::expf(0.625 * ops::lnf(threshold))
+    let root = threshold.sqrt();
+    splash_k_f32(d, speed_m_s) / (root * root.sqrt().sqrt())
 }
 
 /// The smallest drop that splashes when it falls at its terminal speed on a film of `film_mm`. Units: mm.

@@ -271,8 +271,8 @@ fn impacts_per_area_are_near_the_published_values() {
         (100.0, 9256.7, 11416.0, 774.51, 0.20293),
     ] {
         let spectrum = spectrum(rain);
-        let whole = ImpactFlux::level(&spectrum, 0.0, 16.0);
-        let large = ImpactFlux::level(&spectrum, 0.5, 16.0);
+        let whole = ImpactFlux::level(&spectrum, 0.0, f64::INFINITY);
+        let large = ImpactFlux::level(&spectrum, 0.5, f64::INFINITY);
         for (value, published) in [
             (large.number_per_m2_s, big),
             (whole.number_per_m2_s, all),
@@ -288,7 +288,13 @@ fn impacts_per_area_are_near_the_published_values() {
     }
     // Catch ratio of a wall per m/s of wind: R U times the flux-weighted mean of 1/v.
     for (rain, ratio) in [(1.0, 0.2704), (5.0, 0.2096), (25.0, 0.1690)] {
-        let wall = ImpactFlux::new(&spectrum(rain), 0.0, 16.0, DVec3::NEG_X, DVec3::new(3.0, 0.0, 0.0));
+        let wall = ImpactFlux::new(
+            &spectrum(rain),
+            0.0,
+            f64::INFINITY,
+            DVec3::NEG_X,
+            DVec3::new(3.0, 0.0, 0.0),
+        );
         let per_wind = wall.water_mm_h / rain / 3.0;
         assert!((per_wind / ratio - 1.0).abs() < 0.015, "{rain}: {per_wind}");
     }
@@ -333,6 +339,23 @@ fn impacts_follow_fine_sums_on_any_slope() {
 }
 
 #[test]
+fn the_water_that_arrives_is_the_rain() {
+    let mut worst = Worst::default();
+    for distribution in [
+        Distribution::MarshallPalmer,
+        Distribution::Drizzle,
+        Distribution::Thunderstorm,
+    ] {
+        for rain in [1e-3, 1.0, 30.0, 500.0] {
+            let spectrum = Spectrum::new(distribution, rain).expect("valid");
+            let water = ImpactFlux::level(&spectrum, 0.0, f64::INFINITY).water_mm_h;
+            worst.relative(water, rain, 1e-30, || format!("{distribution:?} at {rain} mm/h"));
+        }
+    }
+    worst.assert_below(1e-6, 12);
+}
+
+#[test]
 fn deeper_films_and_lighter_rain_splash_less() {
     let mut last = f64::INFINITY;
     for film in [0.0, 0.05, 0.2, 0.5, 1.0, 3.0] {
@@ -341,7 +364,8 @@ fn deeper_films_and_lighter_rain_splash_less() {
         last = now;
     }
     assert!(splashes_per_m2_s(&spectrum(25.0), 0.5) > splashes_per_m2_s(&spectrum(5.0), 0.5));
-    let share = splashes_per_m2_s(&spectrum(10.0), 0.0) / ImpactFlux::level(&spectrum(10.0), 0.0, 16.0).number_per_m2_s;
+    let share = splashes_per_m2_s(&spectrum(10.0), 0.0)
+        / ImpactFlux::level(&spectrum(10.0), 0.0, f64::INFINITY).number_per_m2_s;
     assert!((0.3..0.6).contains(&share), "{share}");
     assert_eq!(splashes_per_m2_s(&spectrum(0.0), 0.0), 0.0);
 }
