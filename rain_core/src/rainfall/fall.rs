@@ -4,7 +4,7 @@
 //! Stokes part (small drops), c above 1 stiffens as the drop flattens (large drops).
 //!
 //! # Accuracy
-//! One number c per diameter stands for a drag coefficient that changes with speed: at most 0.6 % of v_t against the
+//! One number c per diameter stands for a drag coefficient that changes with speed: at most 0.5 % of v_t against the
 //! integration with Clift & Gauvin's drag between 0.5 and 5 mm. That integration itself guesses how a drop flattens
 //! with speed: ± 2–3 % of v_t for drops of 4–5 mm after some metres. Still air, no added mass (ρ_a/ρ_w = 1e-3).
 
@@ -47,7 +47,7 @@ pub struct FallState {
 /// NaN and negative ones count as 0, those beyond 1e6 (s, m) as 1e6.
 ///
 /// Error: `speed_m_s`, `distance_m`, `speed_after_m_s`, `time_to_fall_s` at most 1e-11 relative against the integrated
-/// drag law. Against the integration with Clift & Gauvin's drag at most 0.6 % of v_t (c = 1: 4.3 %); see the module.
+/// drag law. Against the integration with Clift & Gauvin's drag at most 0.5 % of v_t (c = 1: 4.4 %); see the module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fall {
     terminal_m_s: f64,

@@ -4,8 +4,9 @@
 //! du/dt = (g/v_t)(U − u). For a wind that is constant or linear in time both u and its path are closed forms.
 //!
 //! # Accuracy
-//! The drag is linearised about the terminal speed: exact for slow changes; a wind as fast as the fall itself pulls up to
-//! twice as hard (quadratic drag), so real drops follow somewhat faster. Uniform wind in space.
+//! The drag is linearised about the terminal speed: exact for winds that differ little from the drop's own velocity. A
+//! horizontal difference as large as v_t pulls 1.4 times as hard (quadratic drag), so such drops follow faster; up- and
+//! downdraughts act 1 + c times faster ([`super::Fall`]). Uniform wind in space.
 
 use glam::DVec3;
 
