@@ -52,6 +52,7 @@ pub fn obscured(depth: f64) -> f64 {
 ///
 /// Error: 2e-7 relative.
 #[must_use]
+#[inline]
 pub fn transmittance_f32(depth: f32) -> f32 {
     ops::expf(-clamped_f32(depth))
 }
@@ -60,6 +61,7 @@ pub fn transmittance_f32(depth: f32) -> f32 {
 ///
 /// Error: 2e-7 relative, also for tiny τ.
 #[must_use]
+#[inline]
 pub fn obscured_f32(depth: f32) -> f32 {
     -ops::exp_m1f(-clamped_f32(depth))
 }
@@ -79,6 +81,7 @@ pub fn inscattered(radiance: [f64; 3], fog_radiance: [f64; 3], depth: f64) -> [f
 ///
 /// Error: 3e-7 of the larger radiance.
 #[must_use]
+#[inline]
 pub fn inscattered_f32(radiance: f32, fog_radiance: f32, depth: f32) -> f32 {
     let lost = obscured_f32(depth);
     radiance * (1.0 - lost) + fog_radiance * lost

@@ -16,6 +16,7 @@ const MAX_WAY_M: f64 = 1e9;
 ///
 /// Error: rounding.
 #[must_use]
+#[inline]
 pub fn mean_decay(x: f64) -> f64 {
     if x > 0.0 { -ops::exp_m1(-x) / x } else { 1.0 }
 }
@@ -24,6 +25,7 @@ pub fn mean_decay(x: f64) -> f64 {
 ///
 /// Error: 3e-7 relative.
 #[must_use]
+#[inline]
 pub fn mean_decay_f32(x: f32) -> f32 {
     if x > 0.0 { -ops::exp_m1f(-x) / x } else { 1.0 }
 }

@@ -314,6 +314,7 @@ impl FogTable {
 
     /// Optical depth of the fog at a distance (m, clamped to [0, 1e9], NaN counts as 0). Units: none.
     #[must_use]
+    #[inline]
     pub fn depth_f32(&self, way_m: f32) -> f32 {
         let s = if way_m > 0.0 { way_m.min(1e9) } else { 0.0 };
         let end = MID_END_M[1] as f32;

@@ -40,6 +40,7 @@ pub fn deviation_rad(impact: f64, index: f64) -> f64 {
 ///
 /// Error: 5e-7 against the double form.
 #[must_use]
+#[inline]
 pub fn deviation_sin_cos_f32(impact: f32, index: f32) -> [f32; 2] {
     let s = if impact > 0.0 { impact.min(1.0) } else { 0.0 };
     let n = if index > 1.0 { index.min(10.0) } else { 1.0 };

@@ -251,6 +251,7 @@ fn arrival(c: f64, z: f64, u0: f64) -> [f64; 2] {
 ///
 /// Error: 2e-6 relative, of the speed and of the way, against [`Fall::at`].
 #[must_use]
+#[inline]
 pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32) -> [f32; 2] {
     let within = |x: f32, min: f32, max: f32| if x > min { x.min(max) } else { min };
     let v = within(terminal_m_s, 1e-6, 1e3);
@@ -278,6 +279,7 @@ pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32
 ///
 /// Error: 5e-7 relative against [`Fall::speed_after_m_s`] with c = 1.
 #[must_use]
+#[inline]
 pub fn quadratic_speed_after_f32(terminal_m_s: f32, height_m: f32) -> f32 {
     let within = |x: f32, min: f32, max: f32| if x > min { x.min(max) } else { min };
     let v = within(terminal_m_s, 1e-6, 1e3);

@@ -147,6 +147,7 @@ impl Oscillation {
 ///
 /// Error: 3e-7 against the double formula.
 #[must_use]
+#[inline]
 pub fn oscillating_radius_f32(deflection: f32, cos_theta: f32) -> f32 {
     let within = |x: f32, max: f32| if x.is_nan() { 0.0 } else { x.clamp(-max, max) };
     let (delta, x) = (within(deflection, 0.4), within(cos_theta, 1.0));

@@ -38,6 +38,7 @@ pub fn axis_ratio(diameter_mm: f64) -> f64 {
 ///
 /// Error: 3e-7 against the double form.
 #[must_use]
+#[inline]
 pub fn axis_ratio_f32(diameter_mm: f32) -> f32 {
     let d = if diameter_mm > 0.0 { diameter_mm.min(7.0) } else { 0.0 };
     (1.0048 + d * (5.7e-4 + d * (-0.026_28 + d * (0.003_682 - d * 1.677e-4)))).min(1.0)
@@ -228,6 +229,7 @@ impl DropOutline {
 
     /// [`DropOutline::radius`] in single precision.
     #[must_use]
+    #[inline]
     pub fn radius_f32(&self, cos_theta: f32) -> f32 {
         let x = if cos_theta.is_nan() {
             0.0
@@ -279,6 +281,7 @@ impl DropOutline {
     ///
     /// Error: 1e-6 against the double form.
     #[must_use]
+    #[inline]
     pub fn normal_f32(&self, cos_theta: f32) -> Vec2 {
         let x = if cos_theta.is_nan() {
             0.0

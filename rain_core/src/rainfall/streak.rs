@@ -59,6 +59,7 @@ pub fn streak_peak_opacity(diameter_mm: f64, path_m: f64) -> f64 {
 ///
 /// Error: 1e-15 against the definition; against 512 samples of the disc's way 1/512, which is theirs.
 #[must_use]
+#[inline]
 pub fn streak_opacity(across_m: f64, along_m: f64, diameter_m: f64, path_m: f64) -> f64 {
     let half = 0.5 * diameter_m;
     let square = (half - across_m) * (half + across_m);
@@ -80,6 +81,7 @@ pub fn streak_opacity(across_m: f64, along_m: f64, diameter_m: f64, path_m: f64)
 /// Error: 1e-5 of the peak opacity plus 5e-7 · max(|along|, D)/path against the double form, more than 1e-4 of the radius
 /// inside the rim (a root rises vertically there).
 #[must_use]
+#[inline]
 pub fn streak_opacity_f32(across: f32, along: f32, diameter: f32, path: f32) -> f32 {
     let half = 0.5 * diameter;
     let square = (half - across) * (half + across);

@@ -136,6 +136,7 @@ impl Weights {
 ///
 /// Error: 3e-7 of the larger speed against the double form.
 #[must_use]
+#[inline]
 pub fn relax_f32(velocity_m_s: f32, wind_m_s: f32, response_time_s: f32, dt_s: f32) -> f32 {
     if dt_s.is_nan() || dt_s <= 0.0 {
         return velocity_m_s;
