@@ -8,7 +8,7 @@ use core::f64::consts::TAU;
 
 use super::column::fract;
 use super::shape::DropOutline;
-use crate::constants::{WATER_SURFACE_TENSION, WATER_DENSITY, WATER_KINEMATIC_VISCOSITY};
+use crate::constants::{WATER_DENSITY, WATER_KINEMATIC_VISCOSITY, WATER_SURFACE_TENSION};
 use crate::ops;
 
 /// Frequency of mode n of a free drop, (1/2π)√(n(n−1)(n+2)σ/(ρ_w a³)), a = D/2. Units: Hz.
