@@ -107,11 +107,15 @@ impl GreenAmpt {
     /// Times below 0 and NaN count as 0, those above 1e9 h as 1e9 h. Error: 1e-12 relative.
     #[must_use]
     pub fn flooded_mm(&self, time_h: f64) -> f64 {
-        self.flooded_from(0.0, time_h)
+        self.flooded_from_mm(0.0, time_h)
     }
 
-    /// What has infiltrated after `time_h` more under standing water. Units: mm, hours.
-    fn flooded_from(&self, infiltrated_mm: f64, time_h: f64) -> f64 {
+    /// What has infiltrated after `time_h` more under standing water, from the state `infiltrated_mm`. Units: mm, hours.
+    /// Whoever has less water than this standing limits it. Negative values and NaN count as 0, states above 1e12 mm as
+    /// that, times above 1e9 h as 1e9 h. Error: 1e-12 relative.
+    #[must_use]
+    pub fn flooded_from_mm(&self, infiltrated_mm: f64, time_h: f64) -> f64 {
+        let infiltrated_mm = clamped(infiltrated_mm, 0.0, 1e12);
         let gravity = self.conductivity_mm_h * clamped(time_h, 0.0, 1e9);
         let m = self.front_mm();
         if m <= 1e-9 * gravity || gravity == 0.0 {
@@ -157,7 +161,7 @@ impl GreenAmpt {
             return all;
         }
         let dry_time = ((ponds_at - state) / rain).max(0.0);
-        self.flooded_from(state.max(ponds_at), time - dry_time).min(all)
+        self.flooded_from_mm(state.max(ponds_at), time - dry_time).min(all)
     }
 }
 
