@@ -114,6 +114,8 @@ fn the_front_clamps_and_refuses() {
             assert!(soil.capacity_mm_h(a).is_finite() && soil.capacity_mm_h(a) >= soil.conductivity_mm_h);
             assert!(soil.ponding_time_h(a).is_none_or(|t| t.is_finite() && t >= 0.0), "{a}");
             for b in ANY {
+                let f = soil.flooded_from_mm(a, b);
+                assert!(f.is_finite() && f >= 0.0, "{a} {b}: {f}");
                 for c in ANY {
                     let f = soil.infiltrated_mm(a, b, c);
                     assert!(f.is_finite() && f >= 0.0, "{a} {b} {c}: {f}");
@@ -178,6 +180,8 @@ proptest! {
         prop_assert!(soil.infiltrated_mm(0.0, rain, hours + 0.1) >= whole, "more time");
         let paused = soil.infiltrated_mm(soil.infiltrated_mm(whole, 0.0, 9.0), rain, 1.0);
         prop_assert_eq!(paused, soil.infiltrated_mm(whole, rain, 1.0), "a pause uses nothing up");
+        let flooded = soil.flooded_from_mm(soil.flooded_mm(0.3 * hours), 0.7 * hours);
+        prop_assert!((flooded - soil.flooded_mm(hours)).abs() <= 1e-12 * flooded);
     }
 }
 
