@@ -88,6 +88,8 @@ pub struct BasinRun {
     spill: Vec<f64>,
     clock: Vec<f64>,
     parts: Vec<bool>,
+    /// Basins still to be looked at; has room for all.
+    open: Vec<u32>,
     events: Events,
     /// End of the step; nothing is predicted before all inflows are known.
     end: f64,
@@ -157,6 +159,7 @@ impl BasinRun {
             spill: vec![0.0; count],
             clock: vec![0.0; count],
             parts: vec![false; count],
+            open: Vec::with_capacity(count),
             events: Events::new(count),
             end: 0.0,
             predicting: false,
@@ -373,6 +376,7 @@ impl BasinRun {
             self.follow(pool, now);
             if self.parts[pool as usize] {
                 let children = self.part(pool);
+                self.share_received(pool, children);
                 for child in children {
                     self.clock[child as usize] = now;
                 }
@@ -567,8 +571,9 @@ impl BasinRun {
         let model = self.pool(pool);
         let gain = model.inflow + model.per_area.max(0.0) * self.basins.basins()[at].area_m2;
         let may_fill = volume + gain * left >= model.curve.capacity_m3();
-        let may_part =
-            self.basins.basins()[at].children.is_some() && (model.per_area < 0.0 || !model.own_drains.is_empty());
+        let loss = (-model.per_area).max(0.0) * self.basins.basins()[at].area_m2;
+        let may_part = self.basins.basins()[at].children.is_some()
+            && (!model.own_drains.is_empty() || volume - loss * left <= model.curve.base_volume);
         let mut time = f64::INFINITY;
         if may_fill || may_part {
             let march = model.march(volume, left);
@@ -659,6 +664,8 @@ impl BasinRun {
             self.events.set(child, f64::INFINITY);
         }
         self.unite(pool, sibling, parent);
+        self.received[parent as usize] = self.received[pool as usize] + self.received[sibling as usize];
+        self.donors[parent as usize] = self.donors[pool as usize] + self.donors[sibling as usize];
         self.clock[parent as usize] = now;
     }
 
@@ -686,21 +693,53 @@ impl BasinRun {
         children
     }
 
-    /// Changes what a leaf, and every basin around it, gets from others.
+    /// Changes what a leaf, and the pool of which it is part, gets from others.
     fn receive(&mut self, leaf: u32, change: f64, starts: i32) {
-        let mut at = Some(leaf);
-        while let Some(basin) = at {
-            let donors = &mut self.donors[basin as usize];
-            *donors = donors.saturating_add_signed(starts);
-            let received = &mut self.received[basin as usize];
-            // Without donors exactly nothing, so that rounding does not run on.
-            *received = if *donors == 0 {
-                0.0
-            } else {
-                (*received + change).max(0.0)
-            };
-            at = self.basins.basins()[basin as usize].parent;
+        let pool = self.state.pool_of(&self.basins, leaf);
+        self.receive_at(leaf, change, starts);
+        if pool != leaf {
+            self.receive_at(pool, change, starts);
         }
+    }
+
+    fn receive_at(&mut self, basin: u32, change: f64, starts: i32) {
+        let donors = &mut self.donors[basin as usize];
+        *donors = donors.saturating_add_signed(starts);
+        let received = &mut self.received[basin as usize];
+        // Without donors exactly nothing, so that rounding does not run on.
+        *received = if *donors == 0 {
+            0.0
+        } else {
+            (*received + change).max(0.0)
+        };
+    }
+
+    /// Shares what a pool gets from others between its children: counts the smaller one's leaves.
+    fn share_received(&mut self, pool: u32, children: [u32; 2]) {
+        let basins = Arc::clone(&self.basins);
+        let leaves = |basin: u32| basins.basins()[basin as usize].leaves;
+        let [a, b] = children;
+        let (small, large) = if leaves(a) < leaves(b) { (a, b) } else { (b, a) };
+        let (mut received, mut donors) = (0.0, 0);
+        self.open.push(small);
+        while let Some(basin) = self.open.pop() {
+            match basins.basins()[basin as usize].children {
+                Some(inner) => self.open.extend(inner),
+                None => {
+                    received += self.received[basin as usize];
+                    donors += self.donors[basin as usize];
+                }
+            }
+        }
+        let rest = self.donors[pool as usize].saturating_sub(donors);
+        self.received[large as usize] = if rest == 0 {
+            0.0
+        } else {
+            (self.received[pool as usize] - received).max(0.0)
+        };
+        self.donors[large as usize] = rest;
+        self.received[small as usize] = received;
+        self.donors[small as usize] = donors;
     }
 
     /// Puts water into a pool at once.
