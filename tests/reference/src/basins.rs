@@ -149,7 +149,7 @@ impl Field {
         let mut steepest = 0.0;
         for other in self.neighbours(cell) {
             let diagonal = other % self.nx != cell % self.nx && other / self.nx != cell / self.nx;
-            let distance = if diagonal { 2f64.sqrt() } else { 1.0 };
+            let distance = if diagonal { core::f64::consts::SQRT_2 } else { 1.0 };
             let slope = (self.z[cell] - self.z[other]) / distance;
             if slope > steepest {
                 steepest = slope;
@@ -234,7 +234,7 @@ impl Flooded {
         for other in self.field.neighbours(cell) {
             let diagonal =
                 other % self.field.nx != cell % self.field.nx && other / self.field.nx != cell / self.field.nx;
-            let slope = (level - self.field.z[other]) / if diagonal { 2f64.sqrt() } else { 1.0 };
+            let slope = (level - self.field.z[other]) / if diagonal { core::f64::consts::SQRT_2 } else { 1.0 };
             if self.surface[other] < level && slope > steepest {
                 steepest = slope;
                 best = Some(other);

@@ -6,9 +6,9 @@ use crate::constants::GRAVITY;
 use crate::error::{ConfigError, in_range};
 use crate::ops;
 
-/// Weir coefficient of a grate. Units: m^0.5/s. Source: Brown et al. 2009, HEC-22, eq. 4-26.
+/// Weir coefficient of a grate. Units: m^0.5/s. Source: Brown et al. 2009 (HEC-22), grates in sags.
 const WEIR: f64 = 1.66;
-/// Orifice coefficient of a grate. Units: none. Source: Brown et al. 2009, HEC-22, eq. 4-27.
+/// Orifice coefficient of a grate. Units: none. Source: Brown et al. 2009 (HEC-22), grates in sags.
 const ORIFICE: f64 = 0.67;
 /// Depth of the first knot at which an inlet's flow is tabulated; knot j lies at j² times it. Units: m.
 const KNOT_M: f64 = 1e-6;

@@ -21,6 +21,7 @@ mod hierarchy;
 mod march;
 mod run;
 mod state;
+mod step;
 
 pub use bake::{BakeOptions, BakeReport, Basin, BasinRow, Basins};
 pub use curve::Curve;

@@ -96,7 +96,7 @@ fn a_pool_without_inflow_dries_at_the_rate_of_evaporation() {
 #[test]
 fn losses_follow_a_rough_bottom() {
     let n = 12;
-    let inside = |cell: usize| cell % n > 0 && cell / n > 0 && cell % n + 1 < n && cell / n + 1 < n;
+    let inside = |cell: usize| (1..n - 1).contains(&(cell % n)) && (1..n - 1).contains(&(cell / n));
     let z: Vec<f64> = (0..n * n)
         .map(|cell| {
             let (x, y) = ((cell % n) as f64 - 5.5, (cell / n) as f64 - 5.5);
