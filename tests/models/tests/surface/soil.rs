@@ -1,7 +1,7 @@
 //! Green & Ampt's front, inlets.
 
 use proptest::prelude::*;
-use rain_core::surface::{GreenAmpt, Inlet, SoilTexture};
+use rain_core::surface::{Grate, GreenAmpt, SoilTexture};
 use rain_reference::surface as truth;
 
 use super::{ANY, config, log_spaced};
@@ -185,7 +185,7 @@ proptest! {
     }
 }
 
-const GULLY: Inlet = Inlet {
+const GULLY: Grate = Grate {
     perimeter_m: 1.2,
     area_m2: 0.05,
 };
@@ -241,7 +241,7 @@ fn inlets_clamp_and_refuse() {
             for c in ANY {
                 for inlet in [
                     GULLY,
-                    Inlet {
+                    Grate {
                         perimeter_m: 0.0,
                         ..GULLY
                     },
@@ -253,17 +253,17 @@ fn inlets_clamp_and_refuse() {
         }
         if a.is_nan() || !(0.0..=1e3).contains(&a) {
             assert!(
-                Inlet {
+                Grate {
                     perimeter_m: a,
                     ..GULLY
                 }
                 .validated()
                 .is_err()
             );
-            assert!(Inlet { area_m2: a, ..GULLY }.validated().is_err());
+            assert!(Grate { area_m2: a, ..GULLY }.validated().is_err());
         }
     }
-    let shut = Inlet {
+    let shut = Grate {
         perimeter_m: 0.0,
         area_m2: 0.0,
     };

@@ -7,6 +7,8 @@
 //! In sag, unclogged; a clogging allowance belongs in P and A (half of each is usual). Between the two laws the real
 //! curve is smooth and lower by up to about 10 %.
 
+use serde::{Deserialize, Serialize};
+
 use crate::constants::GRAVITY;
 use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
@@ -18,17 +20,18 @@ const ORIFICE: f64 = 0.67;
 /// Depths beyond this count as this. Units: m.
 const MAX_DEPTH_M: f64 = 100.0;
 
-/// A grate inlet.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inlet {
+/// A grate in the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grate {
     /// Length of the edge that water falls over P. Units: m. Domain: [0, 1000]. 0: shut.
     pub perimeter_m: f64,
     /// Clear opening A. Units: m². Domain: [0, 1000]. 0: shut.
     pub area_m2: f64,
 }
 
-impl Inlet {
-    /// This inlet, if its sizes lie in their domains.
+impl Grate {
+    /// This grate, if its sizes lie in their domains.
     ///
     /// # Errors
     /// Names the first that does not.
