@@ -10,6 +10,7 @@ use super::wet_albedo::WetBody;
 use crate::constants::WATER_IOR;
 use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
+use crate::optics::fresnel;
 
 /// Mean way up per depth of light that leaves the water. Units: none.
 const UP: f64 = 1.19;
@@ -88,7 +89,7 @@ pub fn under_water(dry: [f64; 3], water: &Water, depth_m: f64, cos_incidence: f6
     let c = clamped(cos_incidence, 0.0, 1.0);
     let refracted = ops::sqrt(1.0 - (1.0 - c) * (1.0 + c) / (WATER_IOR * WATER_IOR));
     let body = WetBody {
-        entry_reflectance: super::wet_albedo::water_reflectance(c),
+        entry_reflectance: fresnel(c, WATER_IOR),
         ..WetBody::LEKNER_DORF
     };
     let down = water.transmittance(depth / refracted);

@@ -16,6 +16,7 @@
 //! constant factor 0.3 of the source systems is off by up to 0.6 in albedo (light bodies).
 
 use crate::constants::WATER_IOR;
+use crate::optics::fresnel;
 
 /// R̄(1.333), mean of Fresnel's reflectance over a hemisphere of uniform light. Units: none.
 const WATER_MEAN_REFLECTANCE: f64 = 0.066_405_77;
@@ -83,7 +84,7 @@ impl WetBody {
     #[must_use]
     pub fn albedo_at(&self, dry: f64, cos_incidence: f64) -> f64 {
         let b = self.body(unit(dry));
-        (1.0 - water_reflectance(cos_incidence)) * self.escape(b, 1.0)
+        (1.0 - fresnel(unit(cos_incidence), WATER_IOR)) * self.escape(b, 1.0)
     }
 
     /// The body under water that lets only `down` of the light through on its way in, `up` on its way out and `round`
@@ -112,17 +113,6 @@ fn unit(x: f64) -> f64 {
 /// [`unit`] in single precision.
 fn unit_f32(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
-}
-
-/// Fresnel's reflectance of water for unpolarised light from the air. `cos_incidence` is clamped to [0, 1], NaN
-/// counts as 0 (grazing: 1).
-pub(super) fn water_reflectance(cos_incidence: f64) -> f64 {
-    let c = unit(cos_incidence);
-    let n = WATER_IOR;
-    let t = crate::ops::sqrt(1.0 - (1.0 - c) * (1.0 + c) / (n * n));
-    let s = (c - n * t) / (c + n * t);
-    let p = (n * c - t) / (n * c + t);
-    0.5 * (s * s + p * p)
 }
 
 /// Albedo of a body soaked with water, by Lekner & Dorf: [`WetBody::albedo`] of [`WetBody::LEKNER_DORF`].

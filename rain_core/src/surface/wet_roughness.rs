@@ -12,15 +12,6 @@ use crate::ops;
 /// F₀ of water in air, ((n − 1)/(n + 1))². Units: none.
 pub const WATER_F0: f64 = (WATER_IOR - 1.0) * (WATER_IOR - 1.0) / ((WATER_IOR + 1.0) * (WATER_IOR + 1.0));
 
-/// Reflectance at normal incidence, ((n − 1)/(n + 1))². `ior` is clamped to [1, 10], NaN counts as 1.
-/// Error: 1e-15.
-#[must_use]
-pub fn normal_reflectance(ior: f64) -> f64 {
-    let n = clamped(ior, 1.0, 10.0);
-    let r = (n - 1.0) / (n + 1.0);
-    r * r
-}
-
 /// Roughness under a film of `film_mm` in a texture of `texture_depth_mm`: from α_dry to α_water along
 /// smoothstep(0, T, h). Depths in mm; roughnesses are clamped to [0, 1], NaN counts as 0 (roughness) or no film.
 /// α_water of calm water is 0.02 to 0.05. Error: 3e-16.
