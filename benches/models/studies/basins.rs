@@ -185,7 +185,7 @@ fn baked_chain(nx: usize, z: &[f64]) -> Basins {
     Basins::bake(&Grid::new(nx, 3, 1.0, z), &BakeOptions::default()).expect("a valid grid")
 }
 
-const RAIN: f64 = 20.0 / 3.6e6;
+const RAIN: f64 = 2.0 / 3.6e6;
 const HOUR: f64 = 3600.0;
 
 fn run_for(mut run: BasinRun, forcing: &BasinForcing, steps: u32) -> BasinRun {
@@ -286,7 +286,7 @@ fn bowl_by_steps(baked: &Basins, inflow: f64, loss: f64, steps: u32) -> f64 {
 fn seepage() -> Study {
     let (baked, cells) = bowl();
     let (inflow, loss) = (2e-5, 2e-6);
-    let truth = lossy_volume(&cells, 0.5, inflow, loss, HOUR, 4000);
+    let truth = lossy_volume(&cells, 0.5, inflow, loss, HOUR);
     let top = baked.basins().len() as u32 - 1;
     let forcing = BasinForcing {
         seepage_m_s: loss,

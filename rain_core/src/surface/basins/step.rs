@@ -186,11 +186,12 @@ impl BasinRun {
         let volume = self.state.volumes[at].total();
         let left = self.end - now;
         let model = self.pool(pool);
-        let gain = model.inflow + model.per_area.max(0.0) * self.basins.basins()[at].area_m2;
-        let may_fill = volume + gain * left >= model.curve.capacity_m3();
-        let loss = (-model.per_area).max(0.0) * self.basins.basins()[at].area_m2;
+        // Bounds of the rate over all levels: most steps end far from both brim and sill.
+        let rates =
+            [model.curve.area_in(0), model.curve.full_area_m2()].map(|area| model.inflow + model.per_area * area);
+        let may_fill = volume + rates[0].max(rates[1]) * left >= model.curve.capacity_m3();
         let may_part = self.basins.basins()[at].children.is_some()
-            && (!model.own_drains.is_empty() || volume - loss * left <= model.curve.base_volume);
+            && (!model.own_drains.is_empty() || volume + rates[0].min(rates[1]) * left <= model.curve.base_volume);
         let mut time = f64::INFINITY;
         if may_fill || may_part {
             let march = model.march(volume, left);
