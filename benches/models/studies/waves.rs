@@ -336,7 +336,7 @@ fn ring() -> Study {
     let (bump, push) = (f64::from(ring.bump_m), f64::from(ring.push_m));
     let integral = move |r: f64, panels: usize| {
         truth::hankel(r, s, panels, |k| {
-            bump * (c * k * age).cos() - push * c * s * k * k * (c * k * age).sin() / (c * k)
+            bump * (c * k * age).cos() - push * s * k * (c * k * age).sin()
         })
     };
     let exact: Vec<f64> = radii.iter().map(|r| integral(*r, 800)).collect();

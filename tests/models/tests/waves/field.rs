@@ -301,7 +301,7 @@ fn a_quiet_pond_becomes_still_and_wakes() {
 fn tiny_heights_become_zero_instead_of_denormal() {
     let mut field = started(
         &WaveSettings {
-            damping_per_s: 1.0,
+            damping_per_s: 0.15,
             ..settings(32, 32, 0.7)
         },
         |i, j| 1e-15 * (bump(i, j) - bump(31 - i, j)),
@@ -310,6 +310,9 @@ fn tiny_heights_become_zero_instead_of_denormal() {
         field.step(1);
         assert!(field.heights().iter().all(|u| *u == 0.0 || u.abs() >= 1e-20));
     }
+    field.step(400);
+    // What is left is the mean, by the rounding of the start.
+    field.take_volume_m3();
     field.step(400);
     assert_eq!(peak(&field), 0.0);
 }

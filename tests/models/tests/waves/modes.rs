@@ -214,7 +214,7 @@ fn energy_is_conserved_without_damping() {
         let drift = (field.energy() / start - 1.0).abs();
         assert!(drift < 1e-5, "{stencil:?}: {drift:e}");
         let moved = (super::total(&field) - volume).abs();
-        assert!(moved < 1e-3, "{stencil:?}: the mean drifts by {moved}");
+        assert!(moved < 1e-2, "{stencil:?}: the mean drifts by {moved}");
     }
     let mut double = DoubleField::new(64, Stencil::FivePoint, 0.7, 0.0, |i, j| {
         (-((i as f64 - 20.0).powi(2) + (j as f64 - 37.0).powi(2)) / 18.0).exp()

