@@ -6,8 +6,9 @@ mod run;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use rain_cli::{bake, bench, model};
 
-/// Rain for game engines: run and check scenarios.
+/// Rain for game engines: scenarios, models as a calculator, puddles.
 #[derive(Debug, Parser)]
 #[command(name = "rain", version, about)]
 struct Cli {
@@ -21,6 +22,12 @@ enum Command {
     Run(run::RunArgs),
     /// Run every scenario given (folders too) and say which expectations held.
     Check(check::CheckArgs),
+    /// Compute a physical model: `rain model terminal-speed diameter_mm=2`. Without a name, list them.
+    Model(model::ModelArgs),
+    /// Find the puddles of a scene or height field.
+    Bake(bake::BakeArgs),
+    /// Measure.
+    Bench(bench::BenchArgs),
 }
 
 fn main() -> ExitCode {
@@ -35,5 +42,8 @@ fn main() -> ExitCode {
     match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
+        Command::Model(args) => model::run(&args),
+        Command::Bake(args) => bake::run(&args),
+        Command::Bench(args) => bench::run(&args, &std::env::current_dir().unwrap_or_default()),
     }
 }

@@ -7,6 +7,7 @@ mod check;
 mod drop;
 mod fall;
 mod fall_speed;
+mod height_field;
 mod light;
 mod spectrum;
 mod splash;
