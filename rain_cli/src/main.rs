@@ -1,6 +1,8 @@
 //! The `rain` program.
 
+#[cfg(feature = "scenarios")]
 mod check;
+#[cfg(feature = "scenarios")]
 mod run;
 
 use std::process::ExitCode;
@@ -19,8 +21,10 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a scenario: frames, masks, contact sheet, timeline plot and report.
+    #[cfg(feature = "scenarios")]
     Run(run::RunArgs),
     /// Run every scenario given (folders too) and say which expectations held.
+    #[cfg(feature = "scenarios")]
     Check(check::CheckArgs),
     /// Compute a physical model: `rain model terminal-speed diameter_mm=2`. Without a name, list them.
     Model(model::ModelArgs),
@@ -40,7 +44,9 @@ fn main() -> ExitCode {
         }
     };
     match cli.command {
+        #[cfg(feature = "scenarios")]
         Command::Run(args) => run::run(&args),
+        #[cfg(feature = "scenarios")]
         Command::Check(args) => check::check(&args),
         Command::Model(args) => model::run(&args),
         Command::Bake(args) => bake::run(&args),

@@ -1,41 +1,55 @@
-//! Extinction and visibility.
+//! Reflection, extinction and visibility.
 
-use rain_core::rainfall::{Distribution, Spectrum};
+use rain_core::haze::{EXTINCTION_EFFICIENCY, transmittance};
+use rain_core::ops;
+use rain_core::optics::fresnel as reflectance;
+use rain_core::rainfall::RainKind;
 
 use super::key::{Key, returns};
-use super::rainfall::RAIN_MM_H;
+use super::rainfall::{RAIN_MM_H, carrying};
 use super::{Model, ModelError, Output, ReadFile, Values};
 
-pub(super) const MODELS: &[&Model] = &[&VISIBILITY];
+pub(super) const MODELS: &[&Model] = &[&FRESNEL, &VISIBILITY];
 
-/// Extinction over geometric cross-section of drops far larger than the wavelength. Units: none.
-pub(super) const EXTINCTION_EFFICIENCY: f64 = 2.0;
+static FRESNEL: Model = Model {
+    name: "fresnel",
+    what: "share of unpolarised light that a smooth surface reflects, from outside",
+    keys: &[
+        Key::number("angle_deg", [0.0, 90.0], "°", "angle of incidence"),
+        Key::number("ior", [1.0, 5.0], "", "relative refractive index, inside over outside").or("1.333"),
+    ],
+    returns: &[returns("reflectance", "", "reflected share")],
+    example: &["angle_deg=60"],
+    run: fresnel,
+};
+
+fn fresnel(values: &Values, _: ReadFile<'_>) -> Result<Output, ModelError> {
+    let cos = ops::cos(values.number("angle_deg").to_radians());
+    Ok(Output::new([("reflectance", reflectance(cos, values.number("ior")))]))
+}
 
 static VISIBILITY: Model = Model {
     name: "visibility",
     what: "extinction and visibility in rain (Marshall–Palmer, renormalised; Q = 2; Koschmieder 1924)",
     keys: &[
-        Key::above("intensity_mm_h", RAIN_MM_H, "mm/h", "rain rate"),
+        Key::number("intensity_mm_h", RAIN_MM_H, "mm/h", "rain rate"),
         Key::number("distance_m", [0.0, 1e6], "m", "length of the line of sight"),
     ],
     returns: &[
-        returns("extinction_per_km", "km⁻¹", "extinction coefficient"),
+        returns("extinction_per_km", "km⁻¹", "extinction coefficient σ"),
         returns("transmittance", "", "share of light that arrives"),
-        returns("visibility_km", "km", "distance at which contrast falls to 2 %"),
+        returns("visibility_km", "km", "3.912/σ: contrast falls to 2 %"),
     ],
     example: &["intensity_mm_h=25", "distance_m=100"],
     run: visibility,
 };
 
 fn visibility(values: &Values, _: ReadFile<'_>) -> Result<Output, ModelError> {
-    let spectrum = Spectrum::new(Distribution::MarshallPalmer, values.number("intensity_mm_h"))?;
-    let extinction = EXTINCTION_EFFICIENCY * spectrum.extinction_per_m(0.0, f64::INFINITY);
+    let sizes = carrying(RainKind::MarshallPalmer, values.number("intensity_mm_h"))?;
+    let extinction = EXTINCTION_EFFICIENCY * sizes.extinction_per_m(0.0, f64::INFINITY);
     Ok(Output::new([
         ("extinction_per_km", extinction * 1e3),
-        (
-            "transmittance",
-            rain_core::ops::exp(-extinction * values.number("distance_m")),
-        ),
-        ("visibility_km", 3.912 / extinction * 1e-3),
+        ("transmittance", transmittance(extinction * values.number("distance_m"))),
+        ("visibility_km", 3.912 / (extinction * 1e3)),
     ]))
 }

@@ -3,13 +3,19 @@
 //! One file per phenomenon holds its models: name, keys, what comes back, and the function that calls `rain_core`.
 //! Arguments are read, checked and printed here, the same for all.
 
+mod canopy;
+mod document;
+mod drop;
 mod error;
 mod key;
 mod light;
 mod output;
 mod rainfall;
+mod surface;
 mod values;
+mod waves;
 mod weather;
+mod wheels;
 
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -19,6 +25,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::{Value, json};
 
+pub use document::{EXAMPLE_TIMELINE, document};
 pub use error::ModelError;
 pub use key::{Default, Key, Kind, Returned};
 pub use output::Output;
@@ -46,11 +53,20 @@ pub struct Model {
 /// Every model.
 #[must_use]
 pub fn models() -> Vec<&'static Model> {
-    [rainfall::MODELS, light::MODELS, weather::MODELS]
-        .into_iter()
-        .flatten()
-        .copied()
-        .collect()
+    [
+        rainfall::MODELS,
+        drop::MODELS,
+        light::MODELS,
+        canopy::MODELS,
+        surface::MODELS,
+        wheels::MODELS,
+        waves::MODELS,
+        weather::MODELS,
+    ]
+    .into_iter()
+    .flatten()
+    .copied()
+    .collect()
 }
 
 /// Runs the model `name` on `key=value` arguments.

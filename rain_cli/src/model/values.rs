@@ -1,6 +1,7 @@
 //! Arguments, checked against a model's keys.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use super::error::ModelError;
 use super::key::{Default, Key, Kind};
@@ -106,6 +107,19 @@ impl Values {
             Some(Value::Word(word)) => word,
             _ => panic!("no word {name}"),
         }
+    }
+
+    /// The word chosen as one of the library's kinds.
+    ///
+    /// # Errors
+    /// When the library does not know a word that the key allows: the model's own mistake.
+    pub fn parsed<T: FromStr>(&self, name: &'static str) -> Result<T, ModelError> {
+        let word = self.word(name);
+        word.parse().map_err(|_| ModelError::Value {
+            key: name,
+            value: word.to_owned(),
+            allowed: "another word".to_owned(),
+        })
     }
 
     /// Whether a flag is set.

@@ -27,7 +27,18 @@ pub fn corpus(target: Target) -> Vec<Vec<u8>> {
         Target::Gltf => scenes(),
         Target::Model => texts(&[
             "terminal-speed\ndiameter_mm=2\nfit=default",
+            "rainfall\nintensity_mm_h=25\ndistribution=thunderstorm\nrenormalise=true\nmin_diameter_mm=0.5",
             "visibility\nintensity_mm_h=25\ndistance_m=100",
+            "drop-shape\ndiameter_mm=3",
+            "fall\ndiameter_mm=5\nheight_m=2",
+            "streak\ndiameter_mm=2\nexposure_s=0.0167",
+            "fresnel\nangle_deg=60\nior=1.5",
+            "canopy\nlai=4\nkind=needle\nintensity_mm_h=10\nduration_s=600\nevaporation_mm_h=0.5",
+            "sheet-flow\nmanning_n=0.015\nslope=0.02\nlength_m=5\nintensity_mm_h=50",
+            "road-film\ntexture_depth_mm=0.5\nlength_m=5\nintensity_mm_h=50\nslope=0.02\nfit=gallaway79",
+            "hydroplaning\npressure_kpa=220",
+            "wheel\nspeed_km_h=90\nwidth_mm=200\nfilm_mm=0.5\ntread_mm=3\npressure_kpa=250",
+            "wet-albedo\nalbedo=0.2",
         ]),
     }
 }

@@ -1,7 +1,7 @@
 //! Feeds mutated inputs to one target, or to all in turn, for as long as told.
 #![allow(clippy::print_stdout, reason = "a program's results")]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -22,6 +22,9 @@ struct Args {
     /// Seed: the same seed tries the same inputs in the same order.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Instead of fuzzing, write the target's valid inputs into this folder and its words into `FOLDER.dict`.
+    #[arg(long, requires = "target")]
+    export: Option<PathBuf>,
 }
 
 /// Where failing inputs go.
@@ -43,7 +46,7 @@ fn fuzz(target: Target, time: Duration, seed: u64) -> Result<usize, std::io::Err
         round += 1;
         let from = dice.below(pool.len());
         let mut bytes = pool[from].clone();
-        mutate(&mut dice, &mut bytes, &pool, &words);
+        mutate(&mut dice, target, &mut bytes, &pool, &words);
         match attempt(target, &bytes) {
             Ok(true) => {
                 accepted += 1;
@@ -70,6 +73,20 @@ fn fuzz(target: Target, time: Duration, seed: u64) -> Result<usize, std::io::Err
     Ok(failures)
 }
 
+/// Writes inputs and dictionary for libFuzzer.
+fn export(target: Target, folder: &Path) -> Result<(), std::io::Error> {
+    std::fs::create_dir_all(folder)?;
+    for (i, bytes) in corpus(target).iter().enumerate() {
+        std::fs::write(folder.join(format!("valid-{i}")), bytes)?;
+    }
+    let quoted = |word: &str| -> String { word.bytes().map(|byte| format!("\\x{byte:02x}")).collect() };
+    let dictionary: String = words(target)
+        .iter()
+        .map(|word| format!("\"{}\"\n", quoted(word)))
+        .collect();
+    std::fs::write(folder.with_extension("dict"), dictionary)
+}
+
 fn main() -> ExitCode {
     let args = Args::parse();
     let targets = match &args.target {
@@ -83,6 +100,15 @@ fn main() -> ExitCode {
             }
         },
     };
+    if let (Some(folder), [target]) = (&args.export, targets.as_slice()) {
+        return match export(*target, folder) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("{}: {error}", folder.display());
+                ExitCode::from(2)
+            }
+        };
+    }
     // A panic is caught and told in one line.
     std::panic::set_hook(Box::new(|_| {}));
     let time = Duration::from_secs(args.seconds) / targets.len() as u32;

@@ -2,6 +2,9 @@
 
 use rain_core::hash::pcg3d;
 
+use crate::repair::repair;
+use crate::target::Target;
+
 /// Largest input that is made. Units: bytes.
 pub const LONGEST: usize = 1 << 16;
 
@@ -87,13 +90,17 @@ impl Dice {
     }
 }
 
-/// Breaks `bytes` once or a few times. `others` lend pieces, `words` are tokens of the format.
-pub fn mutate(dice: &mut Dice, bytes: &mut Vec<u8>, others: &[Vec<u8>], words: &[&str]) {
+/// Breaks `bytes` once or a few times, and every other time mends the format's shell. `others` lend pieces, `words` are
+/// tokens of the format.
+pub fn mutate(dice: &mut Dice, target: Target, bytes: &mut Vec<u8>, others: &[Vec<u8>], words: &[&str]) {
     // Few changes reach deep into a parser, many test its doors.
     let rounds = [1, 1, 1, 2, 3, 8][dice.below(6)];
     for _ in 0..rounds {
         once(dice, bytes, others, words);
         bytes.truncate(LONGEST);
+    }
+    if dice.below(2) == 0 {
+        repair(target, bytes);
     }
 }
 

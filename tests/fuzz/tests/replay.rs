@@ -2,6 +2,7 @@
 
 use rain_fuzz::corpus::{corpus, words};
 use rain_fuzz::mutate::{Dice, mutate};
+use rain_fuzz::repair::repair;
 use rain_fuzz::{Failure, Target, attempt};
 
 #[test]
@@ -38,7 +39,7 @@ fn a_few_thousand_mutations_do_no_harm() {
         for round in 0..3000 {
             let mut dice = Dice::new(7, round);
             let mut bytes = pool[dice.below(pool.len())].clone();
-            mutate(&mut dice, &mut bytes, &pool, &words);
+            mutate(&mut dice, target, &mut bytes, &pool, &words);
             match attempt(target, &bytes) {
                 Ok(true) => accepted += 1,
                 Ok(false) => refused += 1,
@@ -70,7 +71,13 @@ fn the_same_seed_makes_the_same_input() {
     let pool = corpus(Target::Gltf);
     let make = |seed, round| {
         let mut bytes = pool[0].clone();
-        mutate(&mut Dice::new(seed, round), &mut bytes, &pool, &words(Target::Gltf));
+        mutate(
+            &mut Dice::new(seed, round),
+            Target::Gltf,
+            &mut bytes,
+            &pool,
+            &words(Target::Gltf),
+        );
         bytes
     };
     assert_eq!(make(3, 5), make(3, 5));
@@ -85,4 +92,15 @@ fn a_panic_and_a_glutton_would_be_seen() {
     let used = allocation_counter::measure(|| drop(std::hint::black_box(vec![1_u8; 100 << 20])));
     assert!(used.bytes_max >= 100 << 20);
     assert_ne!(Failure::Memory(1), Failure::Panic(String::new()));
+}
+
+#[test]
+fn mending_leaves_valid_files_as_they_are() {
+    for target in Target::ALL {
+        for valid in corpus(target) {
+            let mut mended = valid.clone();
+            repair(target, &mut mended);
+            assert_eq!(mended, valid, "{}", target.name());
+        }
+    }
 }
