@@ -16,9 +16,25 @@ const FAINT: RGBColor = RGBColor(225, 229, 234);
 const DEFAULT: RGBColor = RGBColor(213, 94, 0);
 const OTHER: RGBColor = RGBColor(0, 114, 178);
 
-/// Pixels of the picture and of its plane.
-const SIZE: (u32, u32) = (1040, 520);
+/// Pixels: width of the picture and of its plane, least height.
+const WIDTH: u32 = 1040;
 const PLANE: u32 = 600;
+const HEIGHT: u32 = 520;
+/// Pixels of one entry in the list of names, and of the space above it.
+const ENTRY: u32 = 40;
+const LIST_TOP: u32 = 50;
+
+/// A time that is a power of ten, with a fitting unit.
+fn decade(ns: f64) -> String {
+    let (value, unit) = match ns {
+        ns if ns < 0.99 => (ns * 1e3, "ps"),
+        ns if ns < 0.99e3 => (ns, "ns"),
+        ns if ns < 0.99e6 => (ns * 1e-3, "µs"),
+        ns if ns < 0.99e9 => (ns * 1e-6, "ms"),
+        ns => (ns * 1e-9, "s"),
+    };
+    format!("{value:.0} {unit}")
+}
 
 /// Draws the study: numbered points on logarithmic axes, the default in its own colour, and the list of names.
 ///
@@ -48,15 +64,18 @@ pub fn draw(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
     {
         return Err(format!("{}: a time or an error is not finite", study.name));
     }
+    // Whole decades: a logarithmic axis that is shorter crowds its labels.
     let range = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(v), high.max(v)));
-        (low * 0.5)..(high * 2.0)
+        let (low, high) = values.fold((f64::INFINITY, 0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = ((low * 0.8).log10().floor(), (high * 1.25).log10().ceil());
+        (10_f64.powf(low)..10_f64.powf(high), (high - low) as usize)
     };
-    let x = range(&mut points.iter().map(|p| p.0));
-    let y = range(&mut points.iter().map(|p| p.1));
-    let mut pixels = vec![0; 3 * SIZE.0 as usize * SIZE.1 as usize];
+    let (x, x_decades) = range(&mut points.iter().map(|p| p.0));
+    let (y, y_decades) = range(&mut points.iter().map(|p| p.1));
+    let size = (WIDTH, HEIGHT.max(LIST_TOP + ENTRY * (points.len() as u32 + 1)));
+    let mut pixels = vec![0; 3 * size.0 as usize * size.1 as usize];
     let inner = |pixels: &mut [u8]| -> Result<(), Box<dyn std::error::Error>> {
-        let root = BitMapBackend::with_buffer(pixels, SIZE).into_drawing_area();
+        let root = BitMapBackend::with_buffer(pixels, size).into_drawing_area();
         root.fill(&WHITE)?;
         let (left, right) = root.split_horizontally(PLANE);
         let mut chart = ChartBuilder::on(&left)
@@ -73,7 +92,9 @@ pub fn draw(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
             .label_style((FAMILY, 14, &INK))
             .x_desc(format!("time per {}", study.unit))
             .y_desc(study.norm)
-            .x_label_formatter(&|ns| duration(*ns))
+            .x_labels(x_decades.min(6) + 1)
+            .y_labels(y_decades.min(9) + 1)
+            .x_label_formatter(&|ns| decade(*ns))
             .y_label_formatter(&|error| format!("{error:.0e}"))
             .draw()?;
         let centred = Pos::new(HPos::Center, VPos::Center);
@@ -85,7 +106,7 @@ pub fn draw(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
             root.draw(&Text::new((index + 1).to_string(), place, style))?;
         }
         for (index, (variant, time)) in study.variants.iter().zip(times).enumerate() {
-            let top = 50 + 40 * index as i32;
+            let top = (LIST_TOP + ENTRY * index as u32) as i32;
             let colour = if variant.default { DEFAULT } else { OTHER };
             let mark = if variant.default { " (default)" } else { "" };
             let style = (FAMILY, 15, &colour).into_text_style(&right);
@@ -102,6 +123,6 @@ pub fn draw(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
         Ok(())
     };
     inner(&mut pixels).map_err(|error| format!("{}: {error}", study.name))?;
-    image::save_buffer(path, &pixels, SIZE.0, SIZE.1, image::ColorType::Rgb8)
+    image::save_buffer(path, &pixels, size.0, size.1, image::ColorType::Rgb8)
         .map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -14,6 +14,22 @@ pub struct Study {
     pub variants: Vec<Variant>,
 }
 
+impl Study {
+    /// What would make its plot lie: not exactly one default, or an error that is not a number.
+    #[must_use]
+    pub fn fault(&self) -> Option<String> {
+        let defaults = self.variants.iter().filter(|variant| variant.default).count();
+        if defaults != 1 {
+            return Some(format!("{}: {defaults} defaults, must be 1", self.name));
+        }
+        let bad = self
+            .variants
+            .iter()
+            .find(|variant| !variant.error.is_finite() || variant.error < 0.0 || variant.evaluations == 0)?;
+        Some(format!("{}: {} has error {}", self.name, bad.name, bad.error))
+    }
+}
+
 /// One way to compute a model's quantity.
 pub struct Variant {
     /// Short name, as in the legend ("Beard 1976, f32").

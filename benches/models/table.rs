@@ -2,23 +2,32 @@
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::study::Study;
 use crate::timing::Time;
 
 /// One variant's line.
-#[derive(Debug, Serialize)]
-struct Line<'a> {
-    variant: &'a str,
-    default: bool,
-    error: f64,
-    norm: &'a str,
-    ns_per_evaluation: f64,
-    ns_low: f64,
-    ns_high: f64,
-    evaluation: &'a str,
-    ratio_to_default: f64,
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Line {
+    /// Its name.
+    pub variant: String,
+    /// Whether the library uses it unless told otherwise.
+    pub default: bool,
+    /// Error in `norm`.
+    pub error: f64,
+    /// What the error is.
+    pub norm: String,
+    /// Median time of an evaluation. Units: ns.
+    pub ns_per_evaluation: f64,
+    /// Lower end of its 95 % interval. Units: ns.
+    pub ns_low: f64,
+    /// Upper end of its 95 % interval. Units: ns.
+    pub ns_high: f64,
+    /// What one evaluation is.
+    pub evaluation: String,
+    /// Time over the default's.
+    pub ratio_to_default: f64,
 }
 
 /// Three significant digits: more are noise.
@@ -37,19 +46,32 @@ pub fn write(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
     for (variant, time) in study.variants.iter().zip(times) {
         writer
             .serialize(Line {
-                variant: &variant.name,
+                variant: variant.name.clone(),
                 default: variant.default,
                 error: rounded(variant.error),
-                norm: study.norm,
+                norm: study.norm.to_owned(),
                 ns_per_evaluation: rounded(time.median_ns),
                 ns_low: rounded(time.low_ns),
                 ns_high: rounded(time.high_ns),
-                evaluation: study.unit,
+                evaluation: study.unit.to_owned(),
                 ratio_to_default: rounded(time.median_ns / default),
             })
             .map_err(failed)?;
     }
     writer.flush().map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// The lines of a table that [`write`] wrote.
+///
+/// # Errors
+/// When the file cannot be read; the message names it.
+pub fn read(path: &Path) -> Result<Vec<Line>, String> {
+    let failed = |error: csv::Error| format!("{}: {error}", path.display());
+    csv::Reader::from_path(path)
+        .map_err(failed)?
+        .deserialize()
+        .collect::<Result<_, _>>()
+        .map_err(failed)
 }
 
 /// Time of the default variant. Units: ns.
@@ -88,12 +110,20 @@ pub fn text(study: &Study, times: &[Time]) -> String {
     out
 }
 
-/// A time with a fitting unit.
+/// A time in three significant digits with a fitting unit.
 #[must_use]
 pub fn duration(ns: f64) -> String {
-    match ns {
-        ns if ns < 1e3 => format!("{ns:.3} ns"),
-        ns if ns < 1e6 => format!("{:.3} µs", ns * 1e-3),
-        ns => format!("{:.3} ms", ns * 1e-6),
-    }
+    let (value, unit) = match ns {
+        ns if ns < 1e3 => (ns, "ns"),
+        ns if ns < 1e6 => (ns * 1e-3, "µs"),
+        ns if ns < 1e9 => (ns * 1e-6, "ms"),
+        ns => (ns * 1e-9, "s"),
+    };
+    let decimals = match value {
+        v if v < 1.0 => 3,
+        v if v < 10.0 => 2,
+        v if v < 100.0 => 1,
+        _ => 0,
+    };
+    format!("{value:.decimals$} {unit}")
 }

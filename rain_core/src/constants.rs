@@ -12,3 +12,16 @@ pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 pub const WATER_IOR: f64 = 1.333;
 /// 1 mm/h in m/s.
 pub const M_S_PER_MM_H: f64 = 1.0 / 3.6e6;
+/// Gas constant of dry air. Units: J/(kg K).
+pub const DRY_AIR_GAS_CONSTANT: f64 = 287.05;
+/// 0 °C. Units: K.
+pub const ZERO_CELSIUS_K: f64 = 273.15;
+/// Temperature at which [`AIR_DENSITY`] holds and Gunn & Kinzer measured. Units: °C.
+pub const STANDARD_TEMPERATURE_C: f64 = 20.0;
+/// Surface tension of water against air at 20 °C, as drops, waves and splashes use it. Units: N/m. Source: Pruppacher &
+/// Klett 1997, rounded.
+pub const WATER_SURFACE_TENSION: f64 = 0.0728;
+/// Dynamic viscosity of water at 20 °C. Units: Pa s. Source: Pruppacher & Klett 1997.
+pub const WATER_VISCOSITY: f64 = 1.002e-3;
+/// Kinematic viscosity of water at 20 °C. Units: m²/s. Source: Pruppacher & Klett 1997.
+pub const WATER_KINEMATIC_VISCOSITY: f64 = 1.004e-6;

@@ -52,3 +52,15 @@ pub fn in_range(
         Err(ConfigError::OutOfRange { field, value, allowed })
     }
 }
+
+/// `value` held in [min, max]; what is not a number becomes `min`. For evaluators that must always answer.
+#[must_use]
+pub(crate) fn clamped(value: f64, min: f64, max: f64) -> f64 {
+    if value.is_nan() { min } else { value.clamp(min, max) }
+}
+
+/// [`clamped`] in single precision.
+#[must_use]
+pub(crate) fn clamped_f32(value: f32, min: f32, max: f32) -> f32 {
+    if value.is_nan() { min } else { value.clamp(min, max) }
+}

@@ -65,3 +65,48 @@ pub fn expf(x: f32) -> f32 {
 pub fn lnf(x: f32) -> f32 {
     libm::logf(x)
 }
+/// Angle in [−π/2, π/2] whose sine is x.
+#[must_use]
+pub fn asin(x: f64) -> f64 {
+    libm::asin(x)
+}
+/// Angle in [0, π] whose cosine is x.
+#[must_use]
+pub fn acos(x: f64) -> f64 {
+    libm::acos(x)
+}
+/// Hyperbolic tangent; ±1 for large arguments.
+#[must_use]
+pub fn tanh(x: f64) -> f64 {
+    libm::tanh(x)
+}
+/// Hyperbolic tangent in single precision; ±1 for large arguments.
+#[must_use]
+pub fn tanhf(x: f32) -> f32 {
+    libm::tanhf(x)
+}
+/// e^x − 1 without cancellation, in single precision.
+#[must_use]
+pub fn exp_m1f(x: f32) -> f32 {
+    libm::expm1f(x)
+}
+/// ln(1 + x) without cancellation, in single precision.
+#[must_use]
+pub fn ln_1pf(x: f32) -> f32 {
+    libm::log1pf(x)
+}
+/// Cube root in single precision.
+#[must_use]
+pub fn cbrtf(x: f32) -> f32 {
+    libm::cbrtf(x)
+}
+/// Natural logarithm of |Γ(x)|.
+#[must_use]
+pub fn ln_gamma(x: f64) -> f64 {
+    libm::lgamma(x)
+}
+/// Error function.
+#[must_use]
+pub fn erf(x: f64) -> f64 {
+    libm::erf(x)
+}

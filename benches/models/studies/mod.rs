@@ -5,6 +5,7 @@ mod canopy;
 mod drop;
 mod fall;
 mod fall_speed;
+mod hash;
 mod light;
 mod spectrum;
 mod splash;
@@ -23,6 +24,7 @@ pub fn all() -> Vec<Study> {
         spectrum::studies(),
         drop::studies(),
         light::studies(),
+        hash::studies(),
         canopy::studies(),
         weather::studies(),
         surface::studies(),

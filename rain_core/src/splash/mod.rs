@@ -1,1 +1,36 @@
-//! What a drop does when it hits: splash threshold, crown, secondary drops.
+//! What a drop does when it hits: splash threshold, crown, crater, secondary drops, and how often it happens.
+//!
+//! [`splash_excess`] tells whether a drop splashes, [`Splash`] what comes of it, [`secondary_drop`] gives each thrown
+//! drop from a hash. [`ImpactFlux`] counts impacts and their momentum and energy on any slope in wind,
+//! [`for_each_impact`] places them in cells and time slots, the same at any frame rate.
+//!
+//! | file | concept |
+//! |---|---|
+//! | `numbers.rs` | Weber, Reynolds, Ohnesorge number and K; mass, momentum, energy |
+//! | `threshold.rs` | splash or not, on dry ground and on a film |
+//! | `crown.rs` | crown and crater |
+//! | `secondary.rs` | drops thrown out |
+//! | `impacts.rs` | impacts per area and time |
+//! | `events.rs` | single impacts from hashes |
+//! | `artist.rs` | the sources' own tables of splash rates |
+//!
+//! # Accuracy
+//! Thresholds are measured on smooth walls and thin films of water; rough ground splashes earlier. Crown height and
+//! lifetime, numbers, sizes, speeds and angles of secondary drops are choices within measured ranges. A secondary drop
+//! does not splash again.
+
+mod artist;
+mod crown;
+mod events;
+mod impacts;
+mod numbers;
+mod secondary;
+mod threshold;
+
+pub use artist::{TrafficSplashes, artist_splashes_per_m2_s, splash_image_life_s};
+pub use crown::{crater_radius_m, crown_height_m, crown_life_s, crown_opacity, crown_radius_m, crown_radius_m_f32};
+pub use events::{ImpactEvent, for_each_impact, hashed_poisson};
+pub use impacts::{ImpactFlux, splashes_per_m2_s};
+pub use numbers::{ImpactNumbers, impact_energy_j, impact_momentum_kg_m_s, splash_k, splash_k_f32, water_drop_kg};
+pub use secondary::{Impact, SecondaryDrop, Splash, SplashKind, secondary_drop};
+pub use threshold::{splash_excess, splash_excess_f32, splash_threshold_diameter_mm, splash_threshold_k};

@@ -193,6 +193,9 @@ impl SurfaceColumn {
 
     /// Advances by `dt_s` under constant forcing. `dt_s` = 0 changes nothing.
     ///
+    /// Error: any cut of an interval, from 1 ms to 1 h a step, ends within 1e-10 of each amount (or of 1e-2 mm); within
+    /// 1e-6 of the reference in small steps, which is as far as those reach.
+    ///
     /// # Errors
     /// When a rate or the time is not finite or outside its domain (time: [0, 1e9] s), or the properties are invalid.
     /// Then the column is as before.

@@ -59,6 +59,33 @@ impl Infiltration {
         self.initial_mm_h > 0.0
     }
 
+    /// Capacity f of soil in which `time_s` of Horton's curve is used up. Units: mm/h, s.
+    /// Times below 0 and NaN count as 0. Domain: valid parameters. Error: 1e-14 relative.
+    #[must_use]
+    pub fn capacity_mm_h(&self, time_s: f64) -> f64 {
+        self.curve().capacity(time_s.max(0.0)) * 3600.0
+    }
+
+    /// What the dry soil takes in `time_s` under standing water, F. Units: mm, s. Times below 0 and NaN count as 0,
+    /// those above 1e9 s as 1e9 s. Domain: valid parameters. Error: 1e-13 relative.
+    #[must_use]
+    pub fn flooded_mm(&self, time_s: f64) -> f64 {
+        self.curve().depth(0.0, time_s.max(0.0).min(1e9))
+    }
+
+    /// How long the dry soil takes all of a constant rain: until its capacity, which falls with what infiltrates, is
+    /// down to the rain. Units: s. `None` if R ≤ f_c: for ever (also without rain and for NaN).
+    /// Domain: valid parameters. Error: 1e-12 relative.
+    #[must_use]
+    pub fn ponding_time_s(&self, rain_mm_h: f64) -> Option<f64> {
+        let (curve, rain) = (self.curve(), rain_mm_h.min(1e9) / 3600.0);
+        if rain_mm_h.is_nan() || rain <= curve.floor {
+            return None;
+        }
+        let tau = curve.tau_at(0.0, rain)?;
+        Some(curve.depth(0.0, tau) / rain)
+    }
+
     /// The curve in mm/s and s.
     pub(super) fn curve(&self) -> HortonCurve {
         HortonCurve {

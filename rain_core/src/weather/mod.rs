@@ -6,7 +6,7 @@
 //! | `preset.rs` | named conditions and the intensity classes |
 //! | `timeline.rs` | conditions as a piecewise linear function of time, with exact means |
 //! | `hyetograph.rs` | a timeline read from a CSV table |
-//! | `evaporation.rs` | Penman's potential evaporation |
+//! | `evaporation.rs` | Dalton's and Penman's evaporation, dew, drying time |
 //! | `surface_class.rs` | what asphalt, stone, grass … do with water |
 //! | `store.rs` | an account of water that loses nothing to rounding |
 //! | `horton.rs` | infiltration into soil |
@@ -23,7 +23,7 @@ mod film_flow;
 mod horton;
 mod hyetograph;
 mod preset;
-mod store;
+pub(crate) mod store;
 mod surface_class;
 mod surfaces;
 mod timeline;
@@ -31,7 +31,9 @@ mod timeline;
 pub use artist::{ArtistLaw, ArtistLevel, ArtistSettings, ArtistState, relative_intensity};
 pub use column::{ColumnForcing, ColumnLedger, MAX_INTERVAL_S, MAX_SURFACE_RATE_MM_H, SurfaceColumn};
 pub use conditions::WeatherConditions;
-pub use evaporation::{penman_evaporation_mm_h, saturation_vapour_pressure_pa};
+pub use evaporation::{
+    dalton_evaporation_mm_h, dew_point_c, drying_time_s, penman_evaporation_mm_h, saturation_vapour_pressure_pa,
+};
 pub use horton::Infiltration;
 pub use hyetograph::{HyetographError, HyetographProblem, MAX_HYETOGRAPH_ROWS, read_hyetograph};
 pub use preset::{IntensityClass, UnknownPreset, WeatherPreset};

@@ -58,8 +58,8 @@ mod tests {
     #[test]
     fn known_answers() {
         assert!((simpson(0.0, 1.0, 100, f64::exp) - (core::f64::consts::E - 1.0)).abs() < 1e-11);
-        assert!((bisect(0.0, 2.0, |x| x * x - 2.0) - 2f64.sqrt()).abs() < 1e-15);
+        assert!((bisect(0.0, 2.0, |x| x * x - 2.0) - 2_f64.sqrt()).abs() < 1e-15);
         let [y] = runge_kutta(0.0, 1.0, [1.0], 1000, |_, y| [-y[0]]);
-        assert!((y - (-1f64).exp()).abs() < 1e-13);
+        assert!((y - (-1_f64).exp()).abs() < 1e-13);
     }
 }

@@ -1,1 +1,0 @@
-//! Depressions of a height field, against the slow way.

@@ -1,0 +1,178 @@
+//! Losses on the wet area.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use rain_core::surface::basins::{BakeOptions, BasinForcing, BasinRun, Basins, Grid};
+use rain_reference::basins::{lossy_volume, paraboloid_depth};
+
+use super::terrain::{bake, config, small_fields, unit};
+use crate::check::Worst;
+
+const MM_H: f64 = 1.0 / 3.6e6;
+
+/// z = r²/(2·200 m) on cells of 2 cm, up to r = 2.2 m.
+fn paraboloid() -> (Arc<Basins>, usize) {
+    let n = 221;
+    let z: Vec<f64> = (0..n * n)
+        .map(|cell| {
+            let (x, z) = ((cell % n) as f64 - 110.0, (cell / n) as f64 - 110.0);
+            (x * x + z * z) * 4e-4 / 400.0
+        })
+        .collect();
+    let baked = Basins::bake(&Grid::new(n, n, 0.02, &z), &BakeOptions::default()).unwrap();
+    assert_eq!(baked.basins().len(), 1);
+    (Arc::new(baked), 110 * n + 110)
+}
+
+#[test]
+fn a_paraboloid_fills_as_in_the_closed_form() {
+    let (baked, centre) = paraboloid();
+    let catchment = baked.basins()[0].catchment_m2;
+    let inflow = 30e-3 / 3600.0;
+    let forcing = BasinForcing {
+        evaporation_m_s: 2.0 * MM_H,
+        seepage_m_s: 1.0 * MM_H,
+        ..BasinForcing::rain(inflow / catchment)
+    };
+    let mut worst = Worst::default();
+    let published = [
+        (600.0, 2.497_936e-3),
+        (3600.0, 5.071_979e-3),
+        (7200.0, 6.250_890e-3),
+        (36000.0, 7.889_677e-3),
+    ];
+    for (time, depth) in published {
+        let truth = paraboloid_depth(200.0, inflow, 3.0 * MM_H, time);
+        assert!((truth - depth).abs() < 1e-9, "{truth}");
+        for steps in [1, 37] {
+            let mut run = BasinRun::new(Arc::clone(&baked));
+            for _ in 0..steps {
+                run.advance(&forcing, time / f64::from(steps)).unwrap();
+            }
+            let level = run.level_at(centre).unwrap();
+            worst.relative(level, truth, 1e-9, || format!("{time} s in {steps}"));
+            let ledger = run.ledger();
+            assert!(ledger.residual_relative < 1e-12, "{ledger:?}");
+            assert!((ledger.evaporated_m3 / ledger.infiltrated_m3 - 2.0).abs() < 1e-12);
+            if time == 3600.0 {
+                worst.relative(run.volume_m3(0), 16.163_48e-3, 1e-9, || "volume".into());
+                let area = baked.curve(0).area_m2(run.volume_m3(0));
+                assert!((area - 6.373_64).abs() < 0.01, "{area}");
+            }
+        }
+    }
+    // Cells of 2 cm under a pool 1 to 2 m across.
+    worst.assert_below(1e-3, 9);
+    let wrong = paraboloid_depth(200.0, inflow * 1.05, 3.0 * MM_H, 3600.0);
+    assert!((wrong / 5.071_979e-3 - 1.0).abs() > 1e-2);
+}
+
+#[test]
+fn a_pool_without_inflow_dries_at_the_rate_of_evaporation() {
+    let (baked, centre) = paraboloid();
+    let mut run = BasinRun::new(Arc::clone(&baked));
+    run.add_water(centre, baked.curve(0).volume_m3(5e-3)).unwrap();
+    let dry = BasinForcing {
+        evaporation_m_s: 3.0 * MM_H,
+        ..BasinForcing::default()
+    };
+    let mut worst = Worst::default();
+    for minute in 1..=100 {
+        run.advance(&dry, 60.0).unwrap();
+        worst.absolute(
+            run.level_at(centre).unwrap(),
+            5e-3 - 3.0 * MM_H * 60.0 * f64::from(minute),
+            || format!("{minute} min"),
+        );
+    }
+    worst.assert_below(1e-12, 100);
+    assert!(run.volume_m3(0) < 1e-15);
+    run.advance(&dry, 60.0).unwrap();
+    run.advance(&dry, 60.0).unwrap();
+    assert!(run.is_settled() && run.ledger().residual_relative < 1e-12);
+}
+
+#[test]
+fn losses_follow_a_rough_bottom() {
+    let n = 12;
+    let inside = |cell: usize| cell % n > 0 && cell / n > 0 && cell % n + 1 < n && cell / n + 1 < n;
+    let z: Vec<f64> = (0..n * n)
+        .map(|cell| {
+            let (x, y) = ((cell % n) as f64 - 5.5, (cell / n) as f64 - 5.5);
+            if inside(cell) {
+                2e-4 * (x * x + y * y) + 1e-5 * unit(cell as u64, 0, 5)
+            } else {
+                0.1
+            }
+        })
+        .collect();
+    let baked = Arc::new(Basins::bake(&Grid::new(n, n, 0.5, &z), &BakeOptions::default()).unwrap());
+    assert_eq!(baked.basins().iter().filter(|basin| basin.parent.is_none()).count(), 1);
+    let catchment = baked.basins().last().unwrap().catchment_m2;
+    let cells: Vec<f64> = (0..n * n).filter(|&cell| inside(cell)).map(|cell| z[cell]).collect();
+    let mut worst = Worst::default();
+    for (inflow, loss, time) in [(2e-5, 2e-6, 1800.0), (2e-5, 5e-6, 3600.0), (5e-5, 1e-6, 900.0)] {
+        let truth = lossy_volume(&cells, 0.5, inflow, loss, time, 4000);
+        let forcing = BasinForcing {
+            seepage_m_s: loss,
+            ..BasinForcing::rain(inflow / catchment)
+        };
+        for steps in [1, 100] {
+            let mut run = BasinRun::new(Arc::clone(&baked));
+            for _ in 0..steps {
+                run.advance(&forcing, time / f64::from(steps)).unwrap();
+            }
+            worst.relative(run.ledger().stored_m3, truth, 1e-9, || {
+                format!("{inflow} {loss} {steps}")
+            });
+        }
+        assert!(truth > 1e-4);
+    }
+    worst.assert_below(2e-3, 6);
+}
+
+proptest! {
+    #![proptest_config(config(192))]
+
+    #[test]
+    fn steps_of_any_length_end_alike_with_losses(field in small_fields(), loss in 0.0_f64..8e-4, direct in 0.0_f64..2e-3) {
+        let baked = Arc::new(bake(&field));
+        let wet = BasinForcing { rain_m_s: direct, runoff_m_s: 1e-3, evaporation_m_s: 0.25 * loss, seepage_m_s: loss };
+        let dry = BasinForcing { rain_m_s: 0.0, runoff_m_s: 2e-5, ..wet };
+        let mut ends = Vec::new();
+        for step in [1500.0, 310.0, 11.7] {
+            let mut run = BasinRun::new(Arc::clone(&baked));
+            for forcing in [&wet, &dry, &wet] {
+                let mut now = 0.0;
+                while now < 1500.0 {
+                    let next = f64::min(now + step, 1500.0);
+                    run.advance(forcing, next - now).unwrap();
+                    now = next;
+                }
+            }
+            let ledger = run.ledger();
+            prop_assert!(ledger.residual_relative < 1e-12, "{ledger:?}");
+            ends.push(run);
+        }
+        for end in &ends[1..] {
+            for basin in 0..baked.basins().len() as u32 {
+                let (a, b) = (ends[0].volume_m3(basin), end.volume_m3(basin));
+                prop_assert!((a - b).abs() <= 1e-9 * (1.0 + a), "basin {basin}: {a} {b}\n{field:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn more_rain_never_leaves_less_water(field in small_fields(), loss in 0.0_f64..8e-4, rain in 1e-5_f64..1e-3) {
+        let baked = Arc::new(bake(&field));
+        let stored = |rain: f64| {
+            let mut run = BasinRun::new(Arc::clone(&baked));
+            run.advance(&BasinForcing { seepage_m_s: loss, ..BasinForcing::rain(rain) }, 900.0).unwrap();
+            let ledger = run.ledger();
+            assert!(ledger.stored_m3 >= 0.0 && ledger.infiltrated_m3 >= 0.0 && ledger.left_m3 >= 0.0);
+            ledger.stored_m3
+        };
+        prop_assert!(stored(1.1 * rain) >= stored(rain) - 1e-12);
+    }
+}

@@ -1,0 +1,8 @@
+//! Depressions of a height field and the water in them, against the slow way.
+
+mod bake;
+mod drains;
+mod filling;
+mod losses;
+mod robust;
+mod terrain;

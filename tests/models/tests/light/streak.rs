@@ -1,0 +1,223 @@
+//! Streaks of moving drops.
+
+use core::f64::consts::{FRAC_PI_4, PI};
+
+use glam::Vec3;
+use proptest::prelude::*;
+use rain_core::rainfall::{
+    ScreenStreak, circle_of_confusion_px, clip_to_near, contrast_gain, lamp_falloff_per_m2, streak_length_m,
+    streak_opacity, streak_opacity_f32, streak_path_m, streak_peak_opacity,
+};
+use rain_reference::fall::measured_speed;
+use rain_reference::light::streak as reference;
+
+use super::{NOT_NUMBERS, config};
+use crate::check::Worst;
+
+#[test]
+fn lengths_and_opacities_match_the_published_values() {
+    let table = [
+        (0.5, 3.433, 0.412, 0.01456),
+        (1.0, 6.717, 0.806, 0.01489),
+        (2.0, 10.817, 1.298, 0.01849),
+        (3.0, 13.433, 1.612, 0.02233),
+        (4.0, 14.717, 1.766, 0.02718),
+    ];
+    for (d, video, sport, opacity) in table {
+        let v = measured_speed(d);
+        let path = streak_path_m(v, 1.0 / 60.0);
+        assert!((path * 100.0 - video).abs() < 6e-4, "{d}: {path}");
+        assert!((streak_path_m(v, 1.0 / 500.0) * 100.0 - sport).abs() < 6e-4, "{d}");
+        assert!((streak_peak_opacity(d, path) - opacity).abs() < 6e-6, "{d}");
+        assert!((streak_length_m(v, 1.0 / 60.0, d) - path - d * 1e-3).abs() < 1e-15);
+        // The peak is the profile's.
+        assert!((streak_opacity(0.0, 0.5 * path, d * 1e-3, path) - opacity).abs() < 6e-6);
+    }
+    // Yoshida, 1/30 s and the speeds of that source: digest B, 30 D/v.
+    for (d, v, opacity) in [(1.0, 3.877, 0.00774), (1.4, 5.048, 0.00832), (2.0, 6.529, 0.00919)] {
+        assert!(
+            (streak_peak_opacity(d, streak_path_m(v, 1.0 / 30.0)) - opacity).abs() < 6e-6,
+            "{d}"
+        );
+    }
+}
+
+#[test]
+fn opacity_is_the_share_of_time_that_the_disc_covers() {
+    let samples = 512;
+    let mut worst = Worst::default();
+    for path in [0.0, 0.3, 1.0, 2.5, 20.0] {
+        for i in -12..=12 {
+            for j in -8..=40 {
+                let (x, y) = (f64::from(i) * 0.0471, -0.7 + (path + 1.4) * f64::from(j) / 32.0);
+                let slow = reference::covered_share(x, y, 1.0, path, samples);
+                worst.absolute(streak_opacity(x, y, 1.0, path), slow, || {
+                    format!("path {path} at {x} {y}")
+                });
+            }
+        }
+    }
+    // The samples' own resolution.
+    worst.assert_below(1.0 / f64::from(samples), 6_000);
+    let wrong = streak_opacity(0.0, 5.0, 1.05, 10.0);
+    assert!((wrong - reference::covered_share(0.0, 5.0, 1.0, 10.0, samples)).abs() > 1.0 / f64::from(samples));
+}
+
+#[test]
+fn a_drop_darkens_by_its_disc_whatever_the_exposure() {
+    for (diameter, path) in [(1.0, 0.0), (1.0, 0.2), (1.0, 1.0), (1.0, 7.3), (0.4, 30.0)] {
+        let sum = reference::total(|x, y| streak_opacity(x, y, diameter, path), diameter, path, 0.1, 6);
+        let disc = FRAC_PI_4 * diameter * diameter;
+        assert!((sum / disc - 1.0).abs() < 4e-3, "path {path}: {sum} {disc}");
+    }
+    // Exactly: ∫ of the chord over the width, the ends shifted into the middle.
+    let disc = rain_reference::numerics::simpson(0.0, PI, 200, |t: f64| {
+        // x = cos t/2 and mid-streak opacity × path.
+        streak_opacity(0.5 * t.cos(), 5.0, 1.0, 10.0) * 10.0 * 0.5 * t.sin()
+    });
+    assert!((disc - FRAC_PI_4).abs() < 1e-10, "{disc}");
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn opacity_is_bounded_symmetric_and_ends_with_the_disc(
+        x in -1.0_f64..1.0, y in -2.0_f64..12.0, d in 0.01_f64..2.0, path in 0.0_f64..10.0
+    ) {
+        let alpha = streak_opacity(x, y, d, path);
+        prop_assert!((0.0..=1.0).contains(&alpha));
+        prop_assert_eq!(alpha, streak_opacity(-x, y, d, path));
+        prop_assert!((alpha - streak_opacity(x, path - y, d, path)).abs() < 1e-12 || path == 0.0);
+        if x.abs() > 0.5 * d || y < -0.5 * d || y > path + 0.5 * d {
+            prop_assert_eq!(alpha, 0.0);
+        }
+        prop_assert!(path <= d || alpha <= d / path + 1e-14);
+        let single = f64::from(streak_opacity_f32(x as f32, y as f32, d as f32, path as f32));
+        let rounded = streak_opacity(f64::from(x as f32), f64::from(y as f32), f64::from(d as f32), f64::from(path as f32));
+        let scale = if path > d { d / path } else { 1.0 };
+        // The root at the rim turns a rounded difference into its square root.
+        let rim = (1.0 - (2.0 * x / d).abs()).abs();
+        if rim > 1e-4 && path > 1e-3 {
+            prop_assert!((single - rounded).abs() < 1e-5 * scale + 5e-7 * y.abs().max(d) / path, "{single} {rounded}");
+        }
+    }
+
+    #[test]
+    fn a_projected_streak_keeps_the_sum_of_its_disc(
+        x in -3.0_f32..3.0, y in -3.0_f32..3.0, start in 0.3_f32..20.0, end in 0.3_f32..20.0, d in 1e-4_f32..6e-3,
+        focal in 100.0_f32..3000.0, blur in 0.0_f32..30.0
+    ) {
+        let (tail, head) = (Vec3::new(x, y + 0.1, -start), Vec3::new(x, y, -end));
+        let streak = ScreenStreak::project(head, tail, d, focal, 0.1).expect("in view");
+        let exact = FRAC_PI_4 * f64::from(d * focal).powi(2) / (f64::from(start) * f64::from(end));
+        prop_assert!((f64::from(streak.sum_px2()) / exact - 1.0).abs() < 2e-6);
+        prop_assert!((f64::from(streak.blurred(blur).sum_px2()) / exact - 1.0).abs() < 3e-6);
+        prop_assert!(streak.width_px >= 1.0 && streak.length_px >= streak.width_px && f64::from(streak.opacity) <= FRAC_PI_4 + 1e-6);
+        // Seen from the other end of time it is the same streak.
+        let back = ScreenStreak::project(tail, head, d, focal, 0.1).expect("in view");
+        prop_assert!(back.head_px == streak.tail_px && back.opacity == streak.opacity);
+    }
+
+    #[test]
+    fn a_streak_through_the_near_plane_loses_what_lies_before_it(
+        start in -5.0_f32..20.0, end in -5.0_f32..20.0, near in 0.05_f32..0.5
+    ) {
+        let (tail, head) = (Vec3::new(0.3, 0.2, -start), Vec3::new(-0.1, 0.4, -end));
+        match clip_to_near(head, tail, near) {
+            None => prop_assert!(start < near && end < near),
+            Some((a, b, share)) => {
+                prop_assert!(-a.z >= near * 0.999_999 && -b.z >= near * 0.999_999 && (0.0..=1.0).contains(&share));
+                let kept = (b - a).length() / (tail - head).length();
+                prop_assert!((kept - share).abs() < 1e-4 || (tail - head).length() < 0.5, "{kept} {share}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_sum_of_a_clipped_streak_is_the_integral_behind_the_near_plane() {
+    let mut worst = Worst::default();
+    for (start, end) in [(5.0, 2.0), (2.0, -1.0), (-3.0, 0.9), (0.6, 0.15)] {
+        let near = 0.1;
+        let (tail, head) = (Vec3::new(0.1, 0.0, -start as f32), Vec3::new(0.1, 0.2, -end as f32));
+        let streak = ScreenStreak::project(head, tail, 2e-3, 600.0, near as f32).expect("in view");
+        let exact = reference::disc_sum_px2(2e-3, 600.0, start, end, near);
+        worst.relative(f64::from(streak.sum_px2()), exact, 1e-30, || {
+            format!("{start} to {end}")
+        });
+    }
+    // The sum over 200 000 moments cuts the near plane within one of them.
+    worst.assert_below(2e-4, 4);
+}
+
+#[test]
+fn a_thin_streak_is_one_pixel_wide_and_as_much_fainter() {
+    // 1 mm at 10 m with 623.5 px: 0.0624 px wide.
+    let project = |d: f32, z: f32| {
+        ScreenStreak::project(Vec3::new(0.0, 0.0, -z), Vec3::new(0.0, 0.067, -z), d, 623.5, 0.1).expect("in view")
+    };
+    let thin = project(1e-3, 10.0);
+    assert_eq!(thin.width_px, 1.0);
+    assert!(
+        (thin.length_px - (4.17745 + 0.06235)).abs() < 1e-4,
+        "{}",
+        thin.length_px
+    );
+    // Peak contrast of the rule c = (π/4)(D/(vT))(D f/z), for streaks long against the drop.
+    assert!((thin.opacity / (core::f32::consts::FRAC_PI_4 * (1e-3 / 0.067) * 0.062_35) - 1.0).abs() < 0.02);
+    // A camera that falls with the drop sees a disc, not a line.
+    let dot = ScreenStreak::project(-Vec3::Z, -Vec3::Z, 4e-3, 623.5, 0.1).expect("in view");
+    assert!((dot.opacity - core::f32::consts::FRAC_PI_4).abs() < 1e-6 && dot.length_px == dot.width_px);
+}
+
+#[test]
+fn streaks_answer_every_number() {
+    let p = Vec3::new(0.0, 0.0, -1.0);
+    for bad in NOT_NUMBERS {
+        let single = bad as f32;
+        for alpha in [
+            streak_opacity(bad, 0.5, 1.0, 1.0),
+            streak_opacity(0.0, bad, 1.0, 1.0),
+            streak_opacity(0.0, 0.5, bad, 1.0),
+            streak_opacity(0.0, 0.5, 1.0, bad),
+            streak_peak_opacity(bad, bad),
+            streak_peak_opacity(1.0, bad),
+            f64::from(streak_opacity_f32(single, single, single, single)),
+            f64::from(streak_opacity_f32(0.0, 0.5, 1.0, single)),
+            contrast_gain(bad, bad),
+            contrast_gain(0.5, bad),
+        ] {
+            assert!((0.0..=1.0).contains(&alpha), "{bad}: {alpha}");
+        }
+        assert!(streak_path_m(bad, bad).is_finite() && streak_length_m(bad, bad, bad).is_finite());
+        assert!(
+            circle_of_confusion_px(bad, 1.0, 1.0, 2.0).is_finite() && circle_of_confusion_px(1.0, 1.0, bad, bad) >= 0.0
+        );
+        assert!(lamp_falloff_per_m2(bad, bad).is_finite() && lamp_falloff_per_m2(bad, bad) > 0.0);
+        assert!(ScreenStreak::project(p, p, single, 600.0, 0.1).is_none());
+        assert!(ScreenStreak::project(Vec3::splat(single), p, 1e-3, 600.0, 0.1).is_none_or(|s| s.opacity.is_finite()));
+        assert!(ScreenStreak::project(p, p, 1e-3, single, 0.1).is_none());
+        assert!(clip_to_near(p, p, single).is_none());
+        let sharp = ScreenStreak::project(p, p, 1e-3, 600.0, 0.1).expect("in view");
+        assert!(sharp.blurred(single).opacity.is_finite());
+    }
+    assert_eq!(streak_peak_opacity(2.0, 0.0), 1.0);
+    assert_eq!(streak_peak_opacity(0.0, 0.0), 0.0);
+}
+
+#[test]
+fn gains_lenses_and_lamps() {
+    assert!((contrast_gain(0.3, 1.0) - 0.3).abs() < 1e-16);
+    assert!((contrast_gain(0.1, 2.0) - 0.19).abs() < 1e-15);
+    assert!((contrast_gain(1e-12, 6.0) / 6e-12 - 1.0).abs() < 1e-11);
+    assert_eq!(contrast_gain(1.0, 6.0), 1.0);
+    assert!(contrast_gain(0.02, 6.0) > contrast_gain(0.02, 5.0) && contrast_gain(0.9, 32.0) <= 1.0);
+    // 5 mm opening, 1000 px, focus at 4 m: at 2 m 1.25 px, at infinity 1.25 px.
+    assert!((circle_of_confusion_px(5e-3, 1000.0, 2.0, 4.0) - 1.25).abs() < 1e-12);
+    assert!((circle_of_confusion_px(5e-3, 1000.0, 1e12, 4.0) - 1.25).abs() < 1e-9);
+    assert_eq!(circle_of_confusion_px(5e-3, 1000.0, 4.0, 4.0), 0.0);
+    assert!((lamp_falloff_per_m2(10.0, 0.1) - 1.0 / 100.01).abs() < 1e-15);
+    assert!((lamp_falloff_per_m2(20.0, 0.1) / lamp_falloff_per_m2(10.0, 0.1) - 0.25).abs() < 1e-4);
+    assert!((lamp_falloff_per_m2(0.0, 0.1) - 100.0).abs() < 1e-9);
+}

@@ -1,1 +1,0 @@
-//! Drop-size distributions: bulk quantities by brute-force sums.

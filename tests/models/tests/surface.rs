@@ -1,1 +1,0 @@
-//! Film, infiltration, inlets and wet albedo.

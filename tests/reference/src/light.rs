@@ -1,1 +1,0 @@
-//! Fresnel reflection, refraction in a drop, extinction.
