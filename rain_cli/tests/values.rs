@@ -322,6 +322,21 @@ fn light_is_reflected_and_lost() {
     }
     near(&run("fresnel", "angle_deg=90"), "reflectance", 1.0, 1e-12);
     near(&run("fresnel", "angle_deg=40 ior=1"), "reflectance", 0.0, 1e-12);
+    // From inside: the same at normal incidence, all beyond the critical angle of 48.607°.
+    near(
+        &run("fresnel", "angle_deg=0 ior=0.7501875468867217"),
+        "reflectance",
+        0.020373,
+        6e-7,
+    );
+    near(
+        &run("fresnel", "angle_deg=48.7 ior=0.7501875468867217"),
+        "reflectance",
+        1.0,
+        1e-12,
+    );
+    let below = run("fresnel", "angle_deg=48.5 ior=0.7501875468867217");
+    assert!(below.get("reflectance").is_some_and(|r| r < 0.95), "{}", below.json());
     for (rate, extinction) in [
         (1, 0.30794),
         (5, 0.85144),

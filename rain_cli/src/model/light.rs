@@ -2,7 +2,7 @@
 
 use rain_core::haze::{EXTINCTION_EFFICIENCY, transmittance};
 use rain_core::ops;
-use rain_core::optics::fresnel as reflectance;
+use rain_core::optics::{fresnel as from_outside, fresnel_from_inside};
 use rain_core::rainfall::RainKind;
 
 use super::key::{Key, returns};
@@ -13,10 +13,16 @@ pub(super) const MODELS: &[&Model] = &[&FRESNEL, &VISIBILITY];
 
 static FRESNEL: Model = Model {
     name: "fresnel",
-    what: "share of unpolarised light that a smooth surface reflects, from outside",
+    what: "share of unpolarised light that a smooth surface reflects",
     keys: &[
         Key::number("angle_deg", [0.0, 90.0], "°", "angle of incidence"),
-        Key::number("ior", [1.0, 5.0], "", "relative refractive index, inside over outside").or("1.333"),
+        Key::number(
+            "ior",
+            [0.2, 5.0],
+            "",
+            "refractive index behind the surface over that before it; below 1: from inside",
+        )
+        .or("1.333"),
     ],
     returns: &[returns("reflectance", "", "reflected share")],
     example: &["angle_deg=60"],
@@ -25,7 +31,13 @@ static FRESNEL: Model = Model {
 
 fn fresnel(values: &Values, _: ReadFile<'_>) -> Result<Output, ModelError> {
     let cos = ops::cos(values.number("angle_deg").to_radians());
-    Ok(Output::new([("reflectance", reflectance(cos, values.number("ior")))]))
+    let ior = values.number("ior");
+    let reflectance = if ior < 1.0 {
+        fresnel_from_inside(cos, 1.0 / ior)
+    } else {
+        from_outside(cos, ior)
+    };
+    Ok(Output::new([("reflectance", reflectance)]))
 }
 
 static VISIBILITY: Model = Model {

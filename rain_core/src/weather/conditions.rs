@@ -298,7 +298,7 @@ mod tests {
         for wind in [
             DVec3::X * 80.0,
             DVec3::new(48.0, 0.0, -64.0),
-            DVec3::splat(80.0 / 3f64.sqrt() - 1e-13),
+            DVec3::splat(80.0 / 3_f64.sqrt() - 1e-13),
         ] {
             for high in [false, true] {
                 let c = extreme(wind, high);

@@ -36,8 +36,8 @@ fn sixteen_bits_keep_their_steps() {
 
 #[test]
 fn eight_bits_reach_from_black_to_white() {
-    let bytes = encoded(DynamicImage::ImageLuma8(ImageBuffer::from_fn(4, 2, |x, z| {
-        Luma([(85 * x + z * 0) as u8])
+    let bytes = encoded(DynamicImage::ImageLuma8(ImageBuffer::from_fn(4, 2, |x, _| {
+        Luma([(85 * x) as u8])
     })));
     let field = HeightField::from_png(&bytes, 1.0, -3.0, &LIMITS).expect("an image");
     assert_eq!(field.heights(), [0.0, -1.0, -2.0, -3.0, 0.0, -1.0, -2.0, -3.0]);
