@@ -12,4 +12,4 @@ pub mod mutate;
 pub mod repair;
 pub mod target;
 
-pub use target::{Failure, Target, attempt};
+pub use target::{Failure, Target, attempt, attempt_mended};

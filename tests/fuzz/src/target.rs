@@ -5,6 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use rain_core::surface::height_field::{HeightField, ImportLimits};
 use rain_core::weather::{WeatherConditions, read_hyetograph};
 
+use crate::repair::repair;
+
 /// Limits of imports under test: small, so that what they bound shows.
 pub const LIMITS: ImportLimits = ImportLimits {
     cells: 1 << 16,
@@ -146,6 +148,20 @@ pub enum Failure {
     Panic(String),
     /// More memory at once than [`MEMORY`] and [`MEMORY_PER_BYTE`] allow. Units: bytes.
     Memory(u64),
+}
+
+/// Feeds a target the input as it is and with its shell mended, for fuzzers that know nothing of checksums.
+///
+/// # Errors
+/// As [`attempt`].
+pub fn attempt_mended(target: Target, bytes: &[u8]) -> Result<bool, Failure> {
+    let valid = attempt(target, bytes)?;
+    let mut mended = bytes.to_vec();
+    repair(target, &mut mended);
+    if mended == bytes {
+        return Ok(valid);
+    }
+    attempt(target, &mended)
 }
 
 /// Feeds a target and watches. Returns whether the input was valid.

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use rain_fuzz::{Target, attempt};
+use rain_fuzz::{Target, attempt_mended};
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {
     let name = std::env::var("RAIN_FUZZ_TARGET").unwrap_or_default();
@@ -13,7 +13,7 @@ static TARGET: LazyLock<Target> = LazyLock::new(|| {
 });
 
 fuzz_target!(|bytes: &[u8]| {
-    if let Err(failure) = attempt(*TARGET, bytes) {
+    if let Err(failure) = attempt_mended(*TARGET, bytes) {
         panic!("{}: {failure:?}", TARGET.name());
     }
 });
