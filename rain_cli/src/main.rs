@@ -1,13 +1,16 @@
 //! The `rain` program.
 
+#[cfg(feature = "scenarios")]
 mod check;
+#[cfg(feature = "scenarios")]
 mod run;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use rain_cli::{bake, bench, model};
 
-/// Rain for game engines: run and check scenarios.
+/// Rain for game engines: scenarios, models as a calculator, puddles.
 #[derive(Debug, Parser)]
 #[command(name = "rain", version, about)]
 struct Cli {
@@ -18,9 +21,17 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a scenario: frames, masks, contact sheet, timeline plot and report.
+    #[cfg(feature = "scenarios")]
     Run(run::RunArgs),
     /// Run every scenario given (folders too) and say which expectations held.
+    #[cfg(feature = "scenarios")]
     Check(check::CheckArgs),
+    /// Compute a physical model: `rain model terminal-speed diameter_mm=2`. Without a name, list them.
+    Model(model::ModelArgs),
+    /// Find the puddles of a scene or height field.
+    Bake(bake::BakeArgs),
+    /// Measure.
+    Bench(bench::BenchArgs),
 }
 
 fn main() -> ExitCode {
@@ -33,7 +44,12 @@ fn main() -> ExitCode {
         }
     };
     match cli.command {
+        #[cfg(feature = "scenarios")]
         Command::Run(args) => run::run(&args),
+        #[cfg(feature = "scenarios")]
         Command::Check(args) => check::check(&args),
+        Command::Model(args) => model::run(&args),
+        Command::Bake(args) => bake::run(&args),
+        Command::Bench(args) => bench::run(&args, &std::env::current_dir().unwrap_or_default()),
     }
 }

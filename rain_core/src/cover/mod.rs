@@ -33,7 +33,7 @@ pub mod height_tiles;
 pub mod lookup;
 pub mod projection;
 mod query;
-mod raster;
+pub(crate) mod raster;
 mod scene;
 #[cfg(test)]
 mod scene_test;

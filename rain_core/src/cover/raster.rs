@@ -54,31 +54,34 @@ pub(crate) fn project_triangle(corners: &[DVec3; 3], reference_height_m: f64, dr
         return Projected::Degenerate;
     }
     let q = corners.map(|p| fixed_point(p, reference_height_m, drift));
-    let mut t = FixedTriangle {
-        x: q.map(|q| q[0]),
-        z: q.map(|q| q[1]),
-        y: corners.map(|p| p.y - reference_height_m),
-        area2: 0,
-    };
-    let [x, z] = t.bounds();
-    let span = (x[1] - x[0]).max(z[1] - z[0]);
+    let (x, z) = (q.map(|q| q[0]), q.map(|q| q[1]));
+    let span = [x, z].map(|[a, b, c]| a.max(b).max(c) - a.min(b).min(c));
+    let span = span[0].max(span[1]);
     if span > MAX_SPAN {
         return Projected::TooWide(span as f64 / UNITS_PER_M);
     }
-    t.area2 = t.edge(0, 1, t.x[2], t.z[2]);
-    if t.area2 == 0 {
-        return Projected::EdgeOn;
+    match FixedTriangle::oriented(x, z, corners.map(|p| p.y - reference_height_m)) {
+        Some((t, _)) => Projected::Triangle(t),
+        None => Projected::EdgeOn,
     }
-    if t.area2 < 0 {
-        t.x.swap(1, 2);
-        t.z.swap(1, 2);
-        t.y.swap(1, 2);
-        t.area2 = -t.area2;
-    }
-    Projected::Triangle(t)
 }
 
 impl FixedTriangle {
+    /// The triangle with its corners put counter-clockwise in (x, z), and whether they ran clockwise before; `None`
+    /// without area. No side of its rectangle may be longer than [`MAX_SPAN`].
+    pub(crate) fn oriented(x: [i64; 3], z: [i64; 3], y: [f64; 3]) -> Option<(Self, bool)> {
+        let mut t = Self { x, z, y, area2: 0 };
+        t.area2 = t.edge(0, 1, t.x[2], t.z[2]);
+        let clockwise = t.area2 < 0;
+        if clockwise {
+            t.x.swap(1, 2);
+            t.z.swap(1, 2);
+            t.y.swap(1, 2);
+            t.area2 = -t.area2;
+        }
+        (t.area2 > 0).then_some((t, clockwise))
+    }
+
     /// Twice the signed area of (corner i, corner j, p): not negative where p lies left of the edge.
     fn edge(&self, i: usize, j: usize, px: i64, pz: i64) -> i64 {
         (self.x[j] - self.x[i]) * (pz - self.z[i]) - (self.z[j] - self.z[i]) * (px - self.x[i])
@@ -105,47 +108,61 @@ impl FixedTriangle {
         })
     }
 
-    /// Raises the heights of the tile's cells whose centre lies inside or on an edge.
-    pub(crate) fn draw(&self, tile: TileKey, cell_units: i64, heights: &mut [f32]) {
-        let side = TILE_CELLS as i64;
-        let origin = [tile.x, tile.z].map(|k| i64::from(k) * side * cell_units + cell_units / 2);
+    /// Height where the signed areas towards the three edges are `w`, within those of the corners.
+    pub(crate) fn height(&self, w: [i64; 3]) -> f64 {
+        let [a, b, c] = self.y;
+        let y = (w[0] as f64 * a + w[1] as f64 * b + w[2] as f64 * c) * (1.0 / self.area2 as f64);
+        y.clamp(a.min(b).min(c), a.max(b).max(c))
+    }
+
+    /// Calls `visit(column, row, w)` for the cells of a grid whose centre lies inside or on an edge, row by row; `w` are
+    /// twice the areas between the centre and the three edges. `first` is the centre of cell (0, 0).
+    pub(crate) fn for_each_centre(
+        &self,
+        first: [i64; 2],
+        cell_units: i64,
+        cells: [usize; 2],
+        mut visit: impl FnMut(usize, usize, [i64; 3]),
+    ) {
         let [xs, zs] = self.bounds();
         // Cells whose centres lie between the bounds: the first by rounding up, the last by rounding down.
-        let cells = |low: i64, high: i64, origin: i64| {
-            let first = -(origin - low).div_euclid(cell_units);
-            let last = (high - origin).div_euclid(cell_units);
-            (first.max(0), last.min(side - 1))
+        let range = |[low, high]: [i64; 2], first: i64, cells: usize| {
+            let from = -(first - low).div_euclid(cell_units);
+            let to = (high - first).div_euclid(cell_units);
+            (from.max(0), to.min(cells as i64 - 1))
         };
-        let (i0, i1) = cells(xs[0], xs[1], origin[0]);
-        let (j0, j1) = cells(zs[0], zs[1], origin[1]);
+        let (i0, i1) = range(xs, first[0], cells[0]);
+        let (j0, j1) = range(zs, first[1], cells[1]);
         if i0 > i1 || j0 > j1 {
             return;
         }
         let edges = [(1, 2), (2, 0), (0, 1)];
         let step_x = edges.map(|(i, j)| (self.z[i] - self.z[j]) * cell_units);
-        let scale = 1.0 / self.area2 as f64;
-        let [low, high] = [
-            self.y[0].min(self.y[1]).min(self.y[2]),
-            self.y[0].max(self.y[1]).max(self.y[2]),
-        ];
         for j in j0..=j1 {
-            let (px, pz) = (origin[0] + i0 * cell_units, origin[1] + j * cell_units);
+            let (px, pz) = (first[0] + i0 * cell_units, first[1] + j * cell_units);
             let mut w = edges.map(|(a, b)| self.edge(a, b, px, pz));
-            let row = &mut heights[(j * side) as usize..((j + 1) * side) as usize];
-            for cell in &mut row[i0 as usize..=i1 as usize] {
+            for i in i0..=i1 {
                 if w[0] >= 0 && w[1] >= 0 && w[2] >= 0 {
-                    let y = (w[0] as f64 * self.y[0] + w[1] as f64 * self.y[1] + w[2] as f64 * self.y[2]) * scale;
-                    // Adding zero makes −0 into 0: the maximum must not depend on the order of triangles.
-                    let y = (y.clamp(low, high) + 0.0) as f32;
-                    if y > *cell {
-                        *cell = y;
-                    }
+                    visit(i as usize, j as usize, w);
                 }
                 for k in 0..3 {
                     w[k] += step_x[k];
                 }
             }
         }
+    }
+
+    /// Raises the heights of the tile's cells whose centre lies inside or on an edge.
+    pub(crate) fn draw(&self, tile: TileKey, cell_units: i64, heights: &mut [f32]) {
+        let first = [tile.x, tile.z].map(|k| i64::from(k) * TILE_CELLS as i64 * cell_units + cell_units / 2);
+        self.for_each_centre(first, cell_units, [TILE_CELLS; 2], |column, row, w| {
+            // Adding zero makes −0 into 0: the maximum must not depend on the order of triangles.
+            let y = (self.height(w) + 0.0) as f32;
+            let cell = &mut heights[row * TILE_CELLS + column];
+            if y > *cell {
+                *cell = y;
+            }
+        });
     }
 }
 

@@ -140,13 +140,15 @@ impl ConditionValues {
             pressure_pa,
             net_radiation_w_m2,
         ] = self.0;
+        // Blends and means lie between valid values, but for rounding: without the clamps the mean of a spell of 100 %
+        // humidity may be refused. A length is only known to a last bit, so the wind stays as far below its bound.
         WeatherConditions {
-            intensity_mm_h,
-            wind_m_s: DVec3::new(x, y, z),
-            air_temperature_c,
-            relative_humidity,
-            pressure_pa,
-            net_radiation_w_m2,
+            intensity_mm_h: intensity_mm_h.clamp(0.0, MAX_INTENSITY_MM_H),
+            wind_m_s: DVec3::new(x, y, z).clamp_length_max(80.0 * (1.0 - 4.0 * f64::EPSILON)),
+            air_temperature_c: air_temperature_c.clamp(-60.0, 60.0),
+            relative_humidity: relative_humidity.clamp(0.0, 1.0),
+            pressure_pa: pressure_pa.clamp(30_000.0, 110_000.0),
+            net_radiation_w_m2: net_radiation_w_m2.clamp(-300.0, 1400.0),
             distribution,
         }
     }
@@ -278,6 +280,49 @@ mod tests {
         assert_eq!(mid.net_radiation_w_m2, 100.0);
         assert_eq!(mid.distribution, Distribution::Thunderstorm);
         assert_eq!(a.lerp(&b, 0.49).distribution, Distribution::MarshallPalmer);
+    }
+
+    #[test]
+    fn blends_and_means_of_extremes_stay_valid() {
+        use super::super::timeline::{Keyframe, Timeline, Transition};
+        let extreme = |wind: DVec3, high: bool| WeatherConditions {
+            intensity_mm_h: if high { 500.0 } else { 0.0 },
+            wind_m_s: wind,
+            air_temperature_c: if high { 60.0 } else { -60.0 },
+            relative_humidity: if high { 1.0 } else { 0.0 },
+            pressure_pa: if high { 110_000.0 } else { 30_000.0 },
+            net_radiation_w_m2: if high { 1400.0 } else { -300.0 },
+            distribution: Distribution::MarshallPalmer,
+        };
+        let mut checked = 0;
+        for wind in [
+            DVec3::X * 80.0,
+            DVec3::new(48.0, 0.0, -64.0),
+            DVec3::splat(80.0 / 3_f64.sqrt() - 1e-13),
+        ] {
+            for high in [false, true] {
+                let c = extreme(wind, high);
+                // The rain rises, so that the spell is not constant and the rest is averaged.
+                let other = WeatherConditions {
+                    intensity_mm_h: 250.0,
+                    ..c
+                };
+                let key = |time_s, conditions| Keyframe {
+                    time_s,
+                    conditions,
+                    transition: Transition::Linear,
+                };
+                let timeline = Timeline::new(vec![key(0.0, c), key(7.3, other)]).expect("valid");
+                for i in 1..400 {
+                    let t = f64::from(i) * 0.0173;
+                    assert!(c.lerp(&c, t / 7.0).validated().is_ok(), "{c:?} {t}");
+                    let mean = timeline.mean_conditions(0.3 * t, t).expect("times in the domain");
+                    assert!(mean.validated().is_ok(), "{mean:?} {t}");
+                    checked += 1;
+                }
+            }
+        }
+        assert!(checked > 2000);
     }
 
     #[test]

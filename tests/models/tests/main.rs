@@ -7,6 +7,7 @@ mod check;
 mod drop;
 mod fall;
 mod fall_speed;
+mod height_field;
 mod hash;
 mod light;
 mod spectrum;

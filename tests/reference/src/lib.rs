@@ -9,6 +9,7 @@ pub mod canopy;
 pub mod drop;
 pub mod fall;
 pub mod fall_speed;
+pub mod height_field;
 pub mod hash;
 pub mod light;
 pub mod numerics;

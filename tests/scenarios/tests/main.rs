@@ -7,5 +7,6 @@ mod goldens;
 mod intensity;
 mod moving;
 mod real_models;
+mod ron_bytes;
 mod shelter;
 mod street_places;

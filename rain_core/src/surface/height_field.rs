@@ -1,1 +1,0 @@
-//! Height fields: from triangles, images, tables and glTF files.
