@@ -195,7 +195,10 @@ fn one_impact_roughens_as_the_double_integral_says() {
             format!("{diameter} mm")
         });
         let wrong = impact_slope_variance(&impact, 1.1 * s, depth, damping);
-        assert!((wrong / exact - 1.0).abs() > 0.04, "{diameter} mm, s {s}: {wrong}, exact {exact}, {worst:?}");
+        assert!(
+            (wrong / exact - 1.0).abs() > 0.04,
+            "{diameter} mm, s {s}: {wrong}, exact {exact}, {worst:?}"
+        );
     }
     worst.assert_below(1e-6, 4);
 }
