@@ -169,6 +169,14 @@ fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
+/// A pool in which a field uses one core only.
+fn one_thread() -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .expect("one thread")
+}
+
 /// The plain loop over the textbook form, one step at a time, with three buffers.
 fn plain_step(n: usize, c2: f32, g: f32, before: &[f32], now: &[f32], next: &mut [f32]) {
     for j in 0..n {
@@ -247,6 +255,22 @@ fn bandwidth() -> Study {
             f64::from(field.heights()[n])
         });
         variants.push(if n == 512 { variant.default() } else { variant });
+        if n == 1024 {
+            let pool = one_thread();
+            let mut alone = other;
+            let mut best = f64::INFINITY;
+            for _ in 0..40 {
+                let clock = Instant::now();
+                pool.install(|| alone.step(8));
+                best = best.min(clock.elapsed().as_nanos() as f64 / 8.0);
+            }
+            let share = 100.0 * BYTES * (n * n) as f64 / best / one;
+            let name = format!("{n}², threads 1: {share:.0} % of the triad's bandwidth");
+            variants.push(Variant::new(name, error, 8 * (n * n) as u64, move || {
+                pool.install(|| alone.step(8));
+                f64::from(alone.heights()[n])
+            }));
+        }
     }
     Study {
         name: "wave-bandwidth",

@@ -230,7 +230,8 @@ impl SweptSource {
 impl WaveField {
     /// Adds the source of one frame. Two halves of the way with half the push each do the same as the whole.
     ///
-    /// Dry cells, fixed borders and what lies outside are left out; an impulse still moves no water in sum.
+    /// Dry cells, fixed borders and what lies outside are left out; an impulse still moves no water in sum. Costs two looks at
+    /// each cell within 5 s of the way, some ten ns each.
     ///
     /// # Errors
     /// [`ConfigError::OutOfRange`] for a field of `source` outside its domain or not finite; then nothing has changed.
