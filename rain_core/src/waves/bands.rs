@@ -12,7 +12,7 @@ use super::border::Border;
 use super::rows::Rules;
 
 /// Steps in one pass.
-pub(super) const FUSED: usize = 4;
+pub(super) const FUSED: usize = 8;
 
 /// Fields smaller than this are stepped by one thread. Units: cells.
 const PARALLEL_CELLS: usize = 512 * 512;
