@@ -50,7 +50,7 @@ fn renormalisation() -> Study {
         norm: "largest |R carried/R - 1| with the way's own fall law, 0.5-100 mm/h",
         unit: "rain state",
         variants: vec![
-            renormalised("panels of Gauss 8", fall_speed::fit, |r| {
+            renormalised("closed form", fall_speed::fit, |r| {
                 parameters(Spectrum::new(Distribution::MarshallPalmer, r))
             })
             .default(),
@@ -305,7 +305,7 @@ fn class_weights() -> Study {
             timed("with renormalisation by Gauss 24", error, |r, _| {
                 Spectrum::by_gauss::<24>(Distribution::MarshallPalmer, r).map_or(0.0, |s| mixed(&s))
             }),
-            timed("with renormalisation by panels", error, |r, _| {
+            timed("with renormalisation in closed form", error, |r, _| {
                 Spectrum::new(Distribution::MarshallPalmer, r).map_or(0.0, |s| mixed(&s))
             }),
             timed("panels a class", weight_error(by_quadrature), |_, spectrum| {

@@ -51,7 +51,7 @@ fn film() -> Study {
             move || texels.iter().map(|&(p, k)| minute(black_box(p), k)).sum(),
         ));
     }
-    for dt in [5.0, 1.0, 1.0 / 60.0] {
+    for dt in [1.0, 1.0 / 60.0] {
         let singles = singles.clone();
         let minute = move |p: f32, k: f32| (0..steps(dt)).fold(0.0, |h, _| film_step_f32(h, p, k, dt as f32));
         let error = off(&exact, |p, k| f64::from(minute(p as f32, k as f32)));
@@ -85,7 +85,7 @@ fn film() -> Study {
         );
         variants.push(if dt == 1.0 { variant.default() } else { variant });
     }
-    for dt in [20.0, 5.0, 1.0, 0.1] {
+    for dt in [5.0, 1.0, 0.1] {
         let texels = texels.clone();
         let minute =
             move |p: f64, k: f64| (0..steps(dt)).fold(0.0_f64, |h, _| (h + dt * (p - k * h.powf(5.0 / 3.0))).max(0.0));

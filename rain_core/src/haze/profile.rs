@@ -16,21 +16,23 @@ const MAX_WAY_M: f64 = 1e9;
 ///
 /// Error: rounding.
 #[must_use]
+#[inline]
 pub fn mean_decay(x: f64) -> f64 {
     if x > 0.0 { -ops::exp_m1(-x) / x } else { 1.0 }
 }
 
 /// [`mean_decay`] in single precision.
 ///
-/// Error: 2e-7 relative.
+/// Error: 3e-7 relative.
 #[must_use]
+#[inline]
 pub fn mean_decay_f32(x: f32) -> f32 {
     if x > 0.0 { -ops::exp_m1f(-x) / x } else { 1.0 }
 }
 
 /// Haze of extinction σ₀ up to a base height, above it σ₀ e^(−(y − y₀)/H).
 ///
-/// Error: optical depth 1e-12 relative against the integral along the way.
+/// Error: optical depth 2e-10 relative against the integral along the way, which is the integral's own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeightHaze {
     base_per_m: f64,

@@ -41,7 +41,7 @@ pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
 ///
 /// `x`: m, clamped to [0, 1e9], NaN counts as 0; 0 ≤ `from` < `to`.
 ///
-/// Error: 1e-15 of x against the integral.
+/// Error: 1e-13 m against the integral, up to 400 m.
 #[must_use]
 pub fn ramp_integral_m(x: f64, from: f64, to: f64) -> f64 {
     let x = way(x);
@@ -76,7 +76,7 @@ pub fn near_weight(distance_m: f64, range_m: f64) -> f64 {
 ///
 /// `way_m`: s, m, clamped to [0, 1e9]; `range_m` as there.
 ///
-/// Error: 1e-14 of s against the integral.
+/// Error: 1e-13 m against the integral, up to 400 m.
 #[must_use]
 pub fn near_depth_m(way_m: f64, range_m: f64) -> f64 {
     if range_m.is_nan() || range_m < MIN_RANGE_M {
@@ -113,7 +113,7 @@ pub fn mid_weight(distance_m: f64, range_m: f64) -> f64 {
 
 /// ∫₀ˢ [`mid_weight`], the G_m of the account. Units: m. Arguments as in [`near_depth_m`].
 ///
-/// Error: 1e-14 of s against the integral.
+/// Error: 1e-13 m against the integral, up to 400 m.
 #[must_use]
 pub fn mid_depth_m(way_m: f64, range_m: f64) -> f64 {
     let b = mid_start_m(range_m);
@@ -174,7 +174,7 @@ pub struct DrawnClass {
 
 /// The account of one rain state and one view. 208 bytes; nothing is allocated.
 ///
-/// Error: e^(−τ_fog) times the drops' mean transmittance is e^(−Qσs) within 1e-14 against the drops' integral.
+/// Error: e^(−τ_fog) times the drops' mean transmittance is e^(−Qσs) within 1e-13 against the drops' integral.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HazeSharing {
     geometric_per_m: f64,
@@ -265,7 +265,7 @@ const TABLE: usize = 64;
 ///
 /// Entries stand at s = 36 t² m, t even in [0, 1]; beyond 36 m all weights have ended, and the depth is a straight line.
 ///
-/// Error: optical depth within 3e-3 · σ_geo · 1 m of the integral over diameters (5e-6 at 25 mm/h) plus 2e-7 relative.
+/// Error: optical depth within σ_geo · 0.02 m of the integral over diameters (2e-5 at 25 mm/h); 0.003 m without cards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FogTable {
     depth: [f32; TABLE],
@@ -314,6 +314,7 @@ impl FogTable {
 
     /// Optical depth of the fog at a distance (m, clamped to [0, 1e9], NaN counts as 0). Units: none.
     #[must_use]
+    #[inline]
     pub fn depth_f32(&self, way_m: f32) -> f32 {
         let s = if way_m > 0.0 { way_m.min(1e9) } else { 0.0 };
         let end = MID_END_M[1] as f32;

@@ -67,7 +67,7 @@ pub struct DropRays {
 /// [`crate::rainfall::DropOutline`]); the refracted ray leaves as from the sphere with this normal. A normal turned away
 /// from the eye counts as one across the view. `index` as in [`drop_light`]. Vectors must be unit and finite; else `None`.
 ///
-/// Error: directions 2e-6 (1e-3 within 0.001 of the rim), weights 1e-6 against traced rays through a sphere.
+/// Error: directions 1e-5 and weights 5e-6 against traced rays through a sphere, up to 0.99 of the radius.
 #[must_use]
 pub fn drop_rays_f32(view: Vec3, normal: Vec3, index: f32) -> Option<DropRays> {
     if !(view.is_normalized() && normal.is_normalized()) {

@@ -23,7 +23,7 @@ pub struct EnergySplit {
 
 /// The split for a sphere of `index` n (clamped to [1, 10], NaN counts as 1). About 20 µs: make it once.
 ///
-/// Error: 2e-8 against a traced disc.
+/// Error: 2e-8 against 4000 traced rings, which is their own resolution.
 #[must_use]
 pub fn energy_split(index: f64) -> EnergySplit {
     let [reflected, through, one, two, three] = [0, 1, 2, 3, 4].map(|order| sphere_order_share(order, index));
@@ -40,7 +40,7 @@ pub fn energy_split(index: f64) -> EnergySplit {
 ///
 /// `order` above 100 counts as 100; `index` as in [`energy_split`].
 ///
-/// Error: 1e-8 against a traced disc.
+/// Error: 2e-8 as there.
 #[must_use]
 pub fn sphere_order_share(order: u32, index: f64) -> f64 {
     let n = self::index(index);

@@ -32,16 +32,18 @@ impl Polarised {
 /// from air 1.333, air from water 1/1.333), clamped to [0.1, 10], NaN counts as 1. Where n² − 1 + c² < 0: 1, total
 /// reflection. Units: none, in [0, 1].
 ///
-/// Error: 1e-14 against Snell's law and Fresnel's equations by angles.
+/// Error: 1e-12 against Snell's law and Fresnel's equations by angles.
 #[must_use]
+#[inline]
 pub fn fresnel(cos_incidence: f64, relative_index: f64) -> f64 {
     fresnel_polarised(cos_incidence, relative_index).mean()
 }
 
 /// Both polarisations; arguments as in [`fresnel`].
 ///
-/// Error: 1e-14 as there.
+/// Error: 1e-12 as there.
 #[must_use]
+#[inline]
 pub fn fresnel_polarised(cos_incidence: f64, relative_index: f64) -> Polarised {
     let c = cosine(cos_incidence);
     let n = index(relative_index);
@@ -66,7 +68,7 @@ pub fn fresnel_polarised(cos_incidence: f64, relative_index: f64) -> Polarised {
 ///
 /// `index`: of the medium, clamped to [1, 10]; NaN counts as 1.
 ///
-/// Error: 1e-14 as [`fresnel`].
+/// Error: 1e-12 as [`fresnel`], more than 0.001 rad from the critical angle.
 #[must_use]
 pub fn fresnel_from_inside(cos_incidence: f64, index: f64) -> f64 {
     fresnel(cos_incidence, 1.0 / self::index(index).max(1.0))
@@ -74,9 +76,10 @@ pub fn fresnel_from_inside(cos_incidence: f64, index: f64) -> f64 {
 
 /// [`fresnel`] in single precision, robust from c = 0 (F = 1) to 1, total reflection included.
 ///
-/// Error: 1e-6 against the double form for n in [1.1, 2] and its inverses, away from the critical angle (within 1e-5 rad
-/// of it, up to 0.01: F rises vertically there).
+/// Error: 5e-7 against the double form for n in [1.1, 2]; for n in [0.5, 0.75] 1e-5 where |n² − 1 + c²| > 2e-5, up to
+/// 0.02 nearer to the critical angle, where F rises vertically.
 #[must_use]
+#[inline]
 pub fn fresnel_f32(cos_incidence: f32, relative_index: f32) -> f32 {
     let c = if cos_incidence.is_nan() {
         1.0
@@ -115,6 +118,7 @@ pub fn normal_reflectance(relative_index: f64) -> f64 {
 ///
 /// Error: against [`fresnel`] at n = 1.333 at most 0.0593, at 83.8°.
 #[must_use]
+#[inline]
 pub fn schlick(cos_incidence: f64, relative_index: f64) -> f64 {
     let f0 = normal_reflectance(relative_index);
     let x = 1.0 - cosine(cos_incidence);
@@ -124,8 +128,9 @@ pub fn schlick(cos_incidence: f64, relative_index: f64) -> f64 {
 
 /// [`schlick`] in single precision, from F₀ (clamped to [0, 1], NaN counts as 0).
 ///
-/// Error: 2e-7 against the double form.
+/// Error: 3e-7 against the double form.
 #[must_use]
+#[inline]
 pub fn schlick_f32(cos_incidence: f32, normal_reflectance: f32) -> f32 {
     let c = if cos_incidence.is_nan() {
         1.0
@@ -163,7 +168,7 @@ pub fn critical_angle_rad(index: f64) -> f64 {
 /// `index`: n, clamped to [1, 10], NaN counts as 1. The closed form cancels near n = 1: below 1.02 an integral in which
 /// F is smooth, c = √(n²−1) sinh t, is summed instead (about 2 µs).
 ///
-/// Error: 1e-10 absolute and 2e-9 relative against 2∫F c dc.
+/// Error: 1e-13 absolute and 1e-11 relative against 2∫F c dc.
 #[must_use]
 pub fn hemispherical_mean(index: f64) -> f64 {
     let n = self::index(index).max(1.0);

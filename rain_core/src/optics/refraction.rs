@@ -29,7 +29,7 @@ fn half_sine(s: f64, n: f64) -> f64 {
 /// `impact`: s, distance from the axis in radii, clamped to [0, 1], NaN counts as 0; `index`: n, clamped to [1, 10], NaN
 /// counts as 1. The image is inverted: the ray turns towards the axis.
 ///
-/// Error: 1e-15 rad against the two arcs.
+/// Error: 2e-14 rad against the two arcs and against traced rays.
 #[must_use]
 pub fn deviation_rad(impact: f64, index: f64) -> f64 {
     let (s, n) = (self::impact(impact), self::index(index));
@@ -40,6 +40,7 @@ pub fn deviation_rad(impact: f64, index: f64) -> f64 {
 ///
 /// Error: 5e-7 against the double form.
 #[must_use]
+#[inline]
 pub fn deviation_sin_cos_f32(impact: f32, index: f32) -> [f32; 2] {
     let s = if impact > 0.0 { impact.min(1.0) } else { 0.0 };
     let n = if index > 1.0 { index.min(10.0) } else { 1.0 };
@@ -63,7 +64,7 @@ pub fn field_of_view_rad(index: f64) -> f64 {
 ///
 /// `deviation_rad`: clamped to [0, δ(1)], NaN counts as 0; `index` as in [`deviation_rad`]. For n = 1 nothing is deviated: 0.
 ///
-/// Error: round trip 1e-14 below s = 0.99; δ turns vertical at the rim, where s is sharper than δ.
+/// Error: round trip 1e-13 below s = 0.99; δ turns vertical at the rim, where s is sharper than δ.
 #[must_use]
 pub fn impact_of_deviation(deviation_rad: f64, index: f64) -> f64 {
     let n = self::index(index);
@@ -107,7 +108,7 @@ pub struct Bow {
 ///
 /// `index` as in [`deviation_rad`]; `reflections` above 100 count as 100.
 ///
-/// Error: 1e-14 rad against a search for the stationary ray; Airy's theory moves bows of drops below 0.5 mm inward by up
+/// Error: 1e-9 rad against a search for the stationary ray; Airy's theory moves bows of drops below 0.5 mm inward by up
 /// to a degree.
 #[must_use]
 pub fn rainbow(reflections: u32, index: f64) -> Option<Bow> {

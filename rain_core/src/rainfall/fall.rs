@@ -4,7 +4,7 @@
 //! Stokes part (small drops), c above 1 stiffens as the drop flattens (large drops).
 //!
 //! # Accuracy
-//! One number c per diameter stands for a drag coefficient that changes with speed: at most 0.6 % of v_t against the
+//! One number c per diameter stands for a drag coefficient that changes with speed: at most 0.5 % of v_t against the
 //! integration with Clift & Gauvin's drag between 0.5 and 5 mm. That integration itself guesses how a drop flattens
 //! with speed: ± 2–3 % of v_t for drops of 4–5 mm after some metres. Still air, no added mass (ρ_a/ρ_w = 1e-3).
 
@@ -47,7 +47,7 @@ pub struct FallState {
 /// NaN and negative ones count as 0, those beyond 1e6 (s, m) as 1e6.
 ///
 /// Error: `speed_m_s`, `distance_m`, `speed_after_m_s`, `time_to_fall_s` at most 1e-11 relative against the integrated
-/// drag law. Against the integration with Clift & Gauvin's drag at most 0.6 % of v_t (c = 1: 4.3 %); see the module.
+/// drag law. Against the integration with Clift & Gauvin's drag at most 0.5 % of v_t (c = 1: 4.4 %); see the module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fall {
     terminal_m_s: f64,
@@ -251,6 +251,7 @@ fn arrival(c: f64, z: f64, u0: f64) -> [f64; 2] {
 ///
 /// Error: 2e-6 relative, of the speed and of the way, against [`Fall::at`].
 #[must_use]
+#[inline]
 pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32) -> [f32; 2] {
     let within = |x: f32, min: f32, max: f32| if x > min { x.min(max) } else { min };
     let v = within(terminal_m_s, 1e-6, 1e3);
@@ -278,6 +279,7 @@ pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32
 ///
 /// Error: 5e-7 relative against [`Fall::speed_after_m_s`] with c = 1.
 #[must_use]
+#[inline]
 pub fn quadratic_speed_after_f32(terminal_m_s: f32, height_m: f32) -> f32 {
     let within = |x: f32, min: f32, max: f32| if x > min { x.min(max) } else { min };
     let v = within(terminal_m_s, 1e-6, 1e3);

@@ -10,6 +10,7 @@ mod container;
 mod drop_sizes;
 mod fall;
 mod field;
+mod fit_flux;
 mod gamma;
 mod impacts;
 mod incomplete_gamma;

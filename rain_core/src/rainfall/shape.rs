@@ -38,6 +38,7 @@ pub fn axis_ratio(diameter_mm: f64) -> f64 {
 ///
 /// Error: 3e-7 against the double form.
 #[must_use]
+#[inline]
 pub fn axis_ratio_f32(diameter_mm: f32) -> f32 {
     let d = if diameter_mm > 0.0 { diameter_mm.min(7.0) } else { 0.0 };
     (1.0048 + d * (5.7e-4 + d * (-0.026_28 + d * (0.003_682 - d * 1.677e-4)))).min(1.0)
@@ -155,7 +156,7 @@ const TABLE: [(f64, [f64; OUTLINE_TERMS]); 9] = [
 /// Beard & Chuang 1987, cₙ linear in D between the rows of their table, growing as D² below 2 mm, held above 6 mm;
 /// then scaled so that the volume is exactly π D³/6. 200 bytes; nothing is allocated.
 ///
-/// Error: radius 1e-14 of D/2 in double, 5e-7 in single precision against the slow sum; volume 1e-15.
+/// Error: radius 1e-12 of D/2 in double, 6e-7 in single precision; volume 1e-11 against sums over 800 angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DropOutline {
     diameter_mm: f64,
@@ -228,6 +229,7 @@ impl DropOutline {
 
     /// [`DropOutline::radius`] in single precision.
     #[must_use]
+    #[inline]
     pub fn radius_f32(&self, cos_theta: f32) -> f32 {
         let x = if cos_theta.is_nan() {
             0.0
@@ -255,7 +257,7 @@ impl DropOutline {
     ///
     /// `cos_theta` as in [`DropOutline::radius`].
     ///
-    /// Error: 1e-13 against differences of the slow sum's points.
+    /// Error: 1e-10 against differences of the slow sum's points, which is theirs.
     #[must_use]
     pub fn normal(&self, cos_theta: f64) -> DVec2 {
         let x = cosine(cos_theta);
@@ -277,8 +279,9 @@ impl DropOutline {
 
     /// [`DropOutline::normal`] in single precision.
     ///
-    /// Error: 3e-6 against the double form.
+    /// Error: 1e-6 against the double form.
     #[must_use]
+    #[inline]
     pub fn normal_f32(&self, cos_theta: f32) -> Vec2 {
         let x = if cos_theta.is_nan() {
             0.0

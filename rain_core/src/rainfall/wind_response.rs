@@ -4,8 +4,9 @@
 //! du/dt = (g/v_t)(U − u). For a wind that is constant or linear in time both u and its path are closed forms.
 //!
 //! # Accuracy
-//! The drag is linearised about the terminal speed: exact for slow changes; a wind as fast as the fall itself pulls up to
-//! twice as hard (quadratic drag), so real drops follow somewhat faster. Uniform wind in space.
+//! The drag is linearised about the terminal speed: exact for winds that differ little from the drop's own velocity. A
+//! horizontal difference as large as v_t pulls 1.4 times as hard (quadratic drag), so such drops follow faster; up- and
+//! downdraughts act 1 + c times faster ([`super::Fall`]). Uniform wind in space.
 
 use glam::DVec3;
 
@@ -135,6 +136,7 @@ impl Weights {
 ///
 /// Error: 3e-7 of the larger speed against the double form.
 #[must_use]
+#[inline]
 pub fn relax_f32(velocity_m_s: f32, wind_m_s: f32, response_time_s: f32, dt_s: f32) -> f32 {
     if dt_s.is_nan() || dt_s <= 0.0 {
         return velocity_m_s;

@@ -2,7 +2,7 @@
 
 use super::numbers::{FASTEST_M_S, LARGEST_MM, impact_energy_j};
 use super::threshold::splash_excess;
-use crate::constants::{GRAVITY, WATER_SURFACE_TENSION, WATER_DENSITY};
+use crate::constants::{GRAVITY, WATER_DENSITY, WATER_SURFACE_TENSION};
 use crate::error::{clamped, clamped_f32};
 use crate::ops;
 

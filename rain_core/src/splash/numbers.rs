@@ -1,6 +1,6 @@
 //! What an impact is made of: dimensionless numbers, mass, momentum, energy.
 
-use crate::constants::{WATER_SURFACE_TENSION, WATER_DENSITY, WATER_VISCOSITY};
+use crate::constants::{WATER_DENSITY, WATER_SURFACE_TENSION, WATER_VISCOSITY};
 use crate::error::{clamped, clamped_f32};
 use crate::ops;
 

@@ -7,6 +7,8 @@
 //! Looks, chosen by eye: a constant factor 0.3 darkens light materials two to three times too much, and the factor 2.5
 //! on gloss makes every gloss of 0.4 and more a perfect mirror (both sources' errata).
 
+use crate::error::clamped;
+
 /// Darkest factor on the albedo of a wet surface (both sources).
 const WET_ALBEDO: f64 = 0.3;
 /// Largest factor on the gloss of a wet surface (both sources).
@@ -21,7 +23,7 @@ const PUDDLE_DEPTH_MM: f64 = 10.0;
 const LAGARDE_F0: f64 = 0.02;
 
 fn unit(x: f64) -> f64 {
-    x.max(0.0).min(1.0)
+    clamped(x, 0.0, 1.0)
 }
 
 fn lerp(a: f64, b: f64, t: f64) -> f64 {

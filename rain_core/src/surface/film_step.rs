@@ -11,6 +11,9 @@
 //! is `depth + P dt − result` where the result is above 0.
 //!
 //! # Accuracy
+//! In single precision the roundings of many short steps add up: at 60 steps a second 1e-4 of the film in a
+//! minute, where the splitting errs by 1e-7. Step grids by 0.25 to 1 s, or keep the film in f64.
+//!
 //! One texel knows nothing of its neighbours: all water that drains leaves it, and ℓ stands for the flow path. With
 //! ℓ the length of a plane the steady depth is that at its foot.
 

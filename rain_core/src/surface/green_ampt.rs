@@ -8,7 +8,7 @@
 //! A sharp front in a uniform, deep soil; no redistribution in dry spells (use [`crate::weather::Infiltration`] where
 //! recovery matters). K and ψ of a texture class scatter by a factor of ten between samples.
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 
 /// Texture classes with the mean parameters of Rawls et al. 1983.
@@ -100,19 +100,23 @@ impl GreenAmpt {
     /// NaN and amounts below 1e-9 mm count as 1e-9 mm: f is infinite at F = 0. Error: 1e-15 relative.
     #[must_use]
     pub fn capacity_mm_h(&self, infiltrated_mm: f64) -> f64 {
-        self.conductivity_mm_h * (1.0 + self.front_mm() / infiltrated_mm.max(1e-9).min(1e12))
+        self.conductivity_mm_h * (1.0 + self.front_mm() / clamped(infiltrated_mm, 1e-9, 1e12))
     }
 
     /// What has infiltrated `time_h` after the dry soil was flooded. Units: mm, hours.
     /// Times below 0 and NaN count as 0, those above 1e9 h as 1e9 h. Error: 1e-12 relative.
     #[must_use]
     pub fn flooded_mm(&self, time_h: f64) -> f64 {
-        self.flooded_from(0.0, time_h)
+        self.flooded_from_mm(0.0, time_h)
     }
 
-    /// What has infiltrated after `time_h` more under standing water. Units: mm, hours.
-    fn flooded_from(&self, infiltrated_mm: f64, time_h: f64) -> f64 {
-        let gravity = self.conductivity_mm_h * time_h.max(0.0).min(1e9);
+    /// What has infiltrated after `time_h` more under standing water, from the state `infiltrated_mm`. Units: mm, hours.
+    /// Whoever has less water than this standing limits it. Negative values and NaN count as 0, states above 1e12 mm as
+    /// that, times above 1e9 h as 1e9 h. Error: 1e-12 relative.
+    #[must_use]
+    pub fn flooded_from_mm(&self, infiltrated_mm: f64, time_h: f64) -> f64 {
+        let infiltrated_mm = clamped(infiltrated_mm, 0.0, 1e12);
+        let gravity = self.conductivity_mm_h * clamped(time_h, 0.0, 1e9);
         let m = self.front_mm();
         if m <= 1e-9 * gravity || gravity == 0.0 {
             // The front's part, M ln(1 + F/M), is below the last digits (or there is no time).
@@ -144,9 +148,9 @@ impl GreenAmpt {
     /// rain above 1e6 mm/h as 1e6, times above 1e9 h as 1e9. Never more than state + rain·time. Error: 1e-12 relative.
     #[must_use]
     pub fn infiltrated_mm(&self, state_mm: f64, rain_mm_h: f64, time_h: f64) -> f64 {
-        let state = state_mm.max(0.0).min(1e12);
-        let rain = rain_mm_h.max(0.0).min(1e6);
-        let time = time_h.max(0.0).min(1e9);
+        let state = clamped(state_mm, 0.0, 1e12);
+        let rain = clamped(rain_mm_h, 0.0, 1e6);
+        let time = clamped(time_h, 0.0, 1e9);
         let all = state + rain * time;
         let k = self.conductivity_mm_h;
         if rain <= k {
@@ -157,7 +161,7 @@ impl GreenAmpt {
             return all;
         }
         let dry_time = ((ponds_at - state) / rain).max(0.0);
-        self.flooded_from(state.max(ponds_at), time - dry_time).min(all)
+        self.flooded_from_mm(state.max(ponds_at), time - dry_time).min(all)
     }
 }
 

@@ -6,7 +6,7 @@
 //! | `film_step.rs` | one time step of a texel's film: rain against drain |
 //! | `road_film.rs` | water above the texture of a road, by Gallaway |
 //! | `green_ampt.rs` | infiltration by a wetting front |
-//! | `inlet.rs` | what a gully takes |
+//! | `grate.rs` | what a gully takes |
 //! | `puddle.rs` | one paraboloid puddle: volume, level, filling and drying |
 //! | `surface_state.rs` | dry, wet, drenched, puddle |
 //! | `wet_albedo.rs` | how much darker a soaked body is |
@@ -19,8 +19,8 @@ pub mod basins;
 pub mod height_field;
 
 mod film_step;
+mod grate;
 mod green_ampt;
-mod inlet;
 mod puddle;
 mod road_film;
 mod sheet_flow;
@@ -30,12 +30,12 @@ mod wet_albedo;
 mod wet_roughness;
 
 pub use film_step::{drained_film, drained_film_f32, fast_film_step_f32, film_step, film_step_f32};
+pub use grate::Grate;
 pub use green_ampt::{GreenAmpt, SoilTexture};
-pub use inlet::Inlet;
 pub use puddle::ParaboloidPuddle;
 pub use road_film::{RoadFilmFit, RoadSurface};
 pub use sheet_flow::{FlowLaw, SheetFlow, recession_share};
 pub use surface_state::{SurfaceState, SurfaceWeights};
 pub use water_colour::{Water, under_water};
 pub use wet_albedo::{WetBody, saturated_albedo, saturated_albedo_f32, wet_albedo, wet_albedo_f32, wet_albedo_rgb};
-pub use wet_roughness::{WATER_F0, film_roughness, film_roughness_f32, normal_reflectance, widened_roughness};
+pub use wet_roughness::{WATER_F0, film_roughness, film_roughness_f32, widened_roughness};

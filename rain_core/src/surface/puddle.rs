@@ -7,7 +7,7 @@
 //! # Accuracy
 //! Real puddles are irregular; the closed form is what the basin solver is tested against.
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 
 const TWO_PI: f64 = core::f64::consts::TAU;
@@ -109,7 +109,7 @@ impl ParaboloidPuddle {
 
 /// `value` in [0, max]; NaN gives 0.
 fn within(value: f64, max: f64) -> f64 {
-    value.max(0.0).min(max)
+    clamped(value, 0.0, max)
 }
 
 /// s − 1 + e^(−s), without cancellation.

@@ -11,7 +11,7 @@
 //! the change from laminar to turbulent flow on one plane are left out.
 
 use crate::constants::{GRAVITY, M_S_PER_MM_H, WATER_KINEMATIC_VISCOSITY};
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 
 /// Resistance of the bed.
@@ -80,7 +80,7 @@ impl SheetFlow {
     /// Error: 1e-14 relative.
     #[must_use]
     pub fn discharge_m2_s(&self, depth_m: f64) -> f64 {
-        let h = depth_m.max(0.0).min(1e3);
+        let h = clamped(depth_m, 0.0, 1e3);
         if self.manning {
             let c = ops::cbrt(h);
             self.coefficient * h * c * c
@@ -154,7 +154,7 @@ impl SheetFlow {
     }
 
     fn on_plane(&self, x_m: f64) -> f64 {
-        x_m.max(0.0).min(self.length_m)
+        clamped(x_m, 0.0, self.length_m)
     }
 }
 

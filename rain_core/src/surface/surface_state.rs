@@ -7,7 +7,7 @@
 //! # Accuracy
 //! The ramps (cover over [0, T], puddle over [0.8 T, 1.2 T]) are choices, made so that no weight jumps.
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 
 /// Texture depths below this count as this: a weight over a ramp of no width would jump. Units: mm.
 const MIN_TEXTURE_MM: f64 = 0.01;
@@ -93,7 +93,7 @@ impl SurfaceWeights {
     pub fn new(saturation: f64, film_mm: f64, texture_depth_mm: f64) -> Result<Self, ConfigError> {
         in_range("texture_depth_mm", texture_depth_mm, 0.0, 1e3, "0 to 1000 mm")?;
         let t = texture_depth_mm.max(MIN_TEXTURE_MM);
-        let w = saturation.max(0.0).min(1.0);
+        let w = clamped(saturation, 0.0, 1.0);
         let covered = smoothstep(0.0, t, film_mm);
         // Up to here the first ramp is above the second one; rounding must not make the difference negative.
         let puddle = smoothstep(0.8 * t, 1.2 * t, film_mm).min(covered);

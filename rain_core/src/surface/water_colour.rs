@@ -8,8 +8,9 @@
 
 use super::wet_albedo::WetBody;
 use crate::constants::WATER_IOR;
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
+use crate::optics::fresnel;
 
 /// Mean way up per depth of light that leaves the water. Units: none.
 const UP: f64 = 1.19;
@@ -71,7 +72,7 @@ impl Water {
     /// Negative ways and NaN count as 0. Error: 1e-15.
     #[must_use]
     pub fn transmittance(&self, way_m: f64) -> [f64; 3] {
-        let way = way_m.max(0.0).min(1e9);
+        let way = clamped(way_m, 0.0, 1e9);
         self.absorption_per_m
             .map(|absorption| ops::exp(-(absorption + self.turbidity_per_m) * way))
     }
@@ -84,11 +85,11 @@ impl Water {
 /// cosines to [0, 1]; NaN counts as 0. Error: 0.013 against the integral over all directions (absorbing water).
 #[must_use]
 pub fn under_water(dry: [f64; 3], water: &Water, depth_m: f64, cos_incidence: f64) -> [f64; 3] {
-    let depth = depth_m.max(0.0).min(1e9);
-    let c = cos_incidence.max(0.0).min(1.0);
+    let depth = clamped(depth_m, 0.0, 1e9);
+    let c = clamped(cos_incidence, 0.0, 1.0);
     let refracted = ops::sqrt(1.0 - (1.0 - c) * (1.0 + c) / (WATER_IOR * WATER_IOR));
     let body = WetBody {
-        entry_reflectance: super::wet_albedo::water_reflectance(c),
+        entry_reflectance: fresnel(c, WATER_IOR),
         ..WetBody::LEKNER_DORF
     };
     let down = water.transmittance(depth / refracted);
@@ -97,7 +98,7 @@ pub fn under_water(dry: [f64; 3], water: &Water, depth_m: f64, cos_incidence: f6
     core::array::from_fn(|i| {
         let ground = body.albedo_under(dry[i], down[i], up[i], round[i]);
         let hidden = 1.0 - ops::exp(-water.turbidity_per_m * depth * (1.0 / refracted + UP));
-        let mud = (1.0 - body.entry_reflectance) * water.mud_albedo[i].max(0.0).min(1.0);
+        let mud = (1.0 - body.entry_reflectance) * clamped(water.mud_albedo[i], 0.0, 1.0);
         ground + mud * hidden * scattered_share(water.absorption_per_m[i], water.turbidity_per_m)
     })
 }

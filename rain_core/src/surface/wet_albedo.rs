@@ -16,6 +16,7 @@
 //! constant factor 0.3 of the source systems is off by up to 0.6 in albedo (light bodies).
 
 use crate::constants::WATER_IOR;
+use crate::optics::fresnel;
 
 /// R̄(1.333), mean of Fresnel's reflectance over a hemisphere of uniform light. Units: none.
 const WATER_MEAN_REFLECTANCE: f64 = 0.066_405_77;
@@ -62,7 +63,7 @@ impl WetBody {
     /// Error: 5e-9 against the printed formula with R̄ by quadrature.
     #[must_use]
     pub fn albedo(&self, dry: f64) -> f64 {
-        let b = self.body(dry.max(0.0).min(1.0));
+        let b = self.body(unit(dry));
         (1.0 - self.entry_reflectance) * self.escape(b, 1.0)
     }
 
@@ -72,7 +73,7 @@ impl WetBody {
     pub fn albedo_f32(&self, dry: f32) -> f32 {
         let (g, p) = (self.index_gain as f32, self.internal_reflectance as f32);
         let outer = ((1.0 - self.entry_reflectance) * (1.0 - self.internal_reflectance)) as f32;
-        let rho = dry.max(0.0).min(1.0);
+        let rho = unit_f32(dry);
         let b = rho * (2.0 - g + (g - 1.0) * rho);
         outer * b / (1.0 - p * b)
     }
@@ -82,14 +83,14 @@ impl WetBody {
     /// Error: 2e-15 against the formula.
     #[must_use]
     pub fn albedo_at(&self, dry: f64, cos_incidence: f64) -> f64 {
-        let b = self.body(dry.max(0.0).min(1.0));
-        (1.0 - water_reflectance(cos_incidence)) * self.escape(b, 1.0)
+        let b = self.body(unit(dry));
+        (1.0 - fresnel(unit(cos_incidence), WATER_IOR)) * self.escape(b, 1.0)
     }
 
     /// The body under water that lets only `down` of the light through on its way in, `up` on its way out and `round`
     /// on a way from the body to the surface and back (see [`super::under_water`]).
     pub(super) fn albedo_under(&self, dry: f64, down: f64, up: f64, round: f64) -> f64 {
-        let b = self.body(dry.max(0.0).min(1.0));
+        let b = self.body(unit(dry));
         (1.0 - self.entry_reflectance) * down * up * self.escape(b, round)
     }
 
@@ -104,15 +105,14 @@ impl WetBody {
     }
 }
 
-/// Fresnel's reflectance of water for unpolarised light from the air. `cos_incidence` is clamped to [0, 1], NaN
-/// counts as 0 (grazing: 1).
-pub(super) fn water_reflectance(cos_incidence: f64) -> f64 {
-    let c = cos_incidence.max(0.0).min(1.0);
-    let n = WATER_IOR;
-    let t = crate::ops::sqrt(1.0 - (1.0 - c) * (1.0 + c) / (n * n));
-    let s = (c - n * t) / (c + n * t);
-    let p = (n * c - t) / (n * c + t);
-    0.5 * (s * s + p * p)
+/// `x` in [0, 1], NaN gives 0. Without a branch, so that loops over texels are vectorised.
+fn unit(x: f64) -> f64 {
+    if x > 0.0 { x.min(1.0) } else { 0.0 }
+}
+
+/// [`unit`] in single precision.
+fn unit_f32(x: f32) -> f32 {
+    if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
 
 /// Albedo of a body soaked with water, by Lekner & Dorf: [`WetBody::albedo`] of [`WetBody::LEKNER_DORF`].
@@ -139,7 +139,7 @@ pub fn wet_albedo_rgb(dry: [f32; 3]) -> [f32; 3] {
 /// counts as 0. Error: 2e-15 against the formula; the straight line is a choice.
 #[must_use]
 pub fn saturated_albedo(dry: f64, saturation: f64) -> f64 {
-    let (dry, w) = (dry.max(0.0).min(1.0), saturation.max(0.0).min(1.0));
+    let (dry, w) = (unit(dry), unit(saturation));
     dry + (wet_albedo(dry) - dry) * w
 }
 
@@ -147,6 +147,6 @@ pub fn saturated_albedo(dry: f64, saturation: f64) -> f64 {
 #[must_use]
 #[inline]
 pub fn saturated_albedo_f32(dry: f32, saturation: f32) -> f32 {
-    let (dry, w) = (dry.max(0.0).min(1.0), saturation.max(0.0).min(1.0));
+    let (dry, w) = (unit_f32(dry), unit_f32(saturation));
     dry + (wet_albedo_f32(dry) - dry) * w
 }

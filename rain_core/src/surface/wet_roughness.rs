@@ -6,26 +6,18 @@
 
 use super::surface_state::{smoothstep, smoothstep_f32};
 use crate::constants::WATER_IOR;
+use crate::error::{clamped, clamped_f32};
 use crate::ops;
 
 /// F₀ of water in air, ((n − 1)/(n + 1))². Units: none.
 pub const WATER_F0: f64 = (WATER_IOR - 1.0) * (WATER_IOR - 1.0) / ((WATER_IOR + 1.0) * (WATER_IOR + 1.0));
-
-/// Reflectance at normal incidence, ((n − 1)/(n + 1))². `ior` is clamped to [1, 10], NaN counts as 1.
-/// Error: 1e-15.
-#[must_use]
-pub fn normal_reflectance(ior: f64) -> f64 {
-    let n = ior.max(1.0).min(10.0);
-    let r = (n - 1.0) / (n + 1.0);
-    r * r
-}
 
 /// Roughness under a film of `film_mm` in a texture of `texture_depth_mm`: from α_dry to α_water along
 /// smoothstep(0, T, h). Depths in mm; roughnesses are clamped to [0, 1], NaN counts as 0 (roughness) or no film.
 /// α_water of calm water is 0.02 to 0.05. Error: 3e-16.
 #[must_use]
 pub fn film_roughness(dry: f64, water: f64, film_mm: f64, texture_depth_mm: f64) -> f64 {
-    let (dry, water) = (dry.max(0.0).min(1.0), water.max(0.0).min(1.0));
+    let (dry, water) = (clamped(dry, 0.0, 1.0), clamped(water, 0.0, 1.0));
     let covered = smoothstep(0.0, texture_depth_mm.max(0.0), film_mm);
     dry * (1.0 - covered) + water * covered
 }
@@ -33,7 +25,7 @@ pub fn film_roughness(dry: f64, water: f64, film_mm: f64, texture_depth_mm: f64)
 /// [`film_roughness`] in single precision. Error: 2e-7.
 #[must_use]
 pub fn film_roughness_f32(dry: f32, water: f32, film_mm: f32, texture_depth_mm: f32) -> f32 {
-    let (dry, water) = (dry.max(0.0).min(1.0), water.max(0.0).min(1.0));
+    let (dry, water) = (clamped_f32(dry, 0.0, 1.0), clamped_f32(water, 0.0, 1.0));
     let covered = smoothstep_f32(0.0, texture_depth_mm.max(0.0), film_mm);
     dry * (1.0 - covered) + water * covered
 }
@@ -42,6 +34,6 @@ pub fn film_roughness_f32(dry: f32, water: f32, film_mm: f32, texture_depth_mm: 
 /// √(α² + 2⟨s²⟩), at most 1. Inputs are clamped to [0, 1] and [0, ∞), NaN counts as 0. Error: 3e-16.
 #[must_use]
 pub fn widened_roughness(roughness: f64, slope_variance: f64) -> f64 {
-    let a = roughness.max(0.0).min(1.0);
+    let a = clamped(roughness, 0.0, 1.0);
     ops::sqrt(a * a + 2.0 * slope_variance.max(0.0)).min(1.0)
 }

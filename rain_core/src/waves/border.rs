@@ -10,10 +10,12 @@ pub enum Border {
     Fixed,
     /// What leaves on one side enters on the other: a tile.
     Periodic,
-    /// Waves leave: first-order Mur 1981 on the outermost cells, and a sponge of that many cells in front of it (0: none,
-    /// 12 is a good one), whose damping rises quadratically.
+    /// Waves leave: first-order Mur 1981 on the outermost cells, and a sponge of that many cells in front of it (0: none),
+    /// whose damping rises quadratically.
     ///
-    /// Mur alone sends back 0.2 % at normal incidence, (1 − cos θ)/(1 + cos θ) at the angle θ.
+    /// Mur alone sends back 0.2 % at normal incidence, (1 − cos θ)/(1 + cos θ) at the angle θ. A sponge of 12 cells takes
+    /// what a drop of two cells' width leaves of that in a channel to 0.4, one of 20 cells to 0.2. It has to be as wide
+    /// as the waves are long: of waves longer than that a sponge sends back more than Mur alone.
     Open {
         /// Width of the sponge on each side. Units: cells. Domain: [0, 64], below half the field.
         sponge_cells: u32,
@@ -36,8 +38,8 @@ impl Border {
 }
 
 /// Strongest damping of the sponge times its width over the speed: both ways through it leave e^(−k w/(3c)) of a wave.
-/// Stronger reflects at the rise, weaker lets through.
-const SPONGE_STRENGTH: f64 = 12.0;
+/// Stronger reflects at the rise, weaker lets through; 3 to 6 is best for waves of the sponge's width (by trial).
+const SPONGE_STRENGTH: f64 = 5.0;
 
 /// Share of u − u⁻ kept in a step, (1 − a)/(1 + a) with a = k_d dt/2, by the sponge at each of `cells` places along one
 /// axis, times `base`.

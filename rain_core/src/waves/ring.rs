@@ -8,9 +8,10 @@
 //! A pressure impulse Δu_t = A∇²e^(−r²/2s²) makes −A/(cs) times the same with F′ for F and F for H.
 //!
 //! # Accuracy
-//! One wave speed and one damping. For r ≥ 5 s and 5 s after the impact the error against the integral is below 0.2 % of the
-//! ring's crest; without the second term it is 3 %. Inside r = s the value at r = s is used. Surface tension, which
-//! makes short waves run ahead, is left out.
+//! One wave speed and one damping. From r = 5 s on and within −3 s to 5 s of the front the error against the integral is
+//! below 1 % of the crest, below 0.2 % from r = 10 s on for rings of drops; without the second term it is 1 % there. Inside
+//! r = s the value at r = s is used. Surface tension, which makes short waves run ahead, is left out: 5 % of the crest on
+//! 5 mm of water.
 
 use super::impact::DropImpact;
 use crate::constants::WATER_DENSITY;
@@ -182,6 +183,9 @@ impl RingTable {
         };
         // Falls with age: halve the interval.
         let (mut low, mut high) = (0.0_f32, 1e3_f32);
+        if slope.is_nan() || slope <= 0.0 {
+            return high;
+        }
         if steepness(low) <= slope {
             return low;
         }

@@ -4,11 +4,6 @@
 //! surface then stays level, and what is left of the rounding is that of the small terms. With g = (1−a)/(1+a) the other
 //! factor is 1/(1+a) = ½(1+g), so one number a cell describes any damping.
 
-#![allow(
-    clippy::needless_range_loop,
-    reason = "a cell and its neighbours by one index; slices of one length, so no check is left in the loops"
-)]
-
 use super::bed::Bed;
 use super::border::Border;
 use super::stencil::Stencil;
@@ -62,6 +57,9 @@ impl Rules {
             out.fill(0.0);
             return;
         }
+        let even = Even([self.g, (0.5 + 0.5 * self.g) * self.c2]);
+        let sponge = || Sponge(&self.sponge_x, self.sponge_z[j], self.c2);
+        let damped = !self.sponge_x.is_empty();
         if let Some(bed) = &self.bed {
             let above = if j > 0 { j - 1 } else { last };
             let faces = Faces {
@@ -69,24 +67,17 @@ impl Rules {
                 north: &bed.south[above * nx..][..nx],
                 south: &bed.south[j * nx..][..nx],
             };
-            if self.sponge_x.is_empty() {
-                faces_row(out, here, north, south, faces, self.c2, |_| self.g);
+            if damped {
+                faces_row(out, here, north, south, faces, sponge());
             } else {
-                let (gx, gz) = (&self.sponge_x[..nx], self.sponge_z[j]);
-                faces_row(out, here, north, south, faces, self.c2, |i| gx[i] * gz);
+                faces_row(out, here, north, south, faces, even);
             }
         } else {
-            match (self.stencil, self.sponge_x.is_empty()) {
-                (Stencil::FivePoint, true) => five_row(out, here, north, south, wraps, self.c2, |_| self.g),
-                (Stencil::NinePoint, true) => nine_row(out, here, north, south, wraps, self.c2, |_| self.g),
-                (Stencil::FivePoint, false) => {
-                    let (gx, gz) = (&self.sponge_x[..nx], self.sponge_z[j]);
-                    five_row(out, here, north, south, wraps, self.c2, |i| gx[i] * gz);
-                }
-                (Stencil::NinePoint, false) => {
-                    let (gx, gz) = (&self.sponge_x[..nx], self.sponge_z[j]);
-                    nine_row(out, here, north, south, wraps, self.c2, |i| gx[i] * gz);
-                }
+            match (self.stencil, damped) {
+                (Stencil::FivePoint, false) => five_row(out, here, north, south, wraps, even),
+                (Stencil::FivePoint, true) => five_row(out, here, north, south, wraps, sponge()),
+                (Stencil::NinePoint, false) => nine_row(out, here, north, south, wraps, even),
+                (Stencil::NinePoint, true) => nine_row(out, here, north, south, wraps, sponge()),
             }
         }
         match self.border {
@@ -120,6 +111,44 @@ impl Rules {
     }
 }
 
+/// g and C²(1+g)/2 of the columns of a row.
+trait Gain: Copy {
+    fn at(self, i: usize) -> [f32; 2];
+    /// Without the first and the last column.
+    fn inner(self, count: usize) -> Self;
+}
+
+/// The same everywhere.
+#[derive(Clone, Copy)]
+struct Even([f32; 2]);
+
+impl Gain for Even {
+    #[inline(always)]
+    fn at(self, _: usize) -> [f32; 2] {
+        self.0
+    }
+    #[inline(always)]
+    fn inner(self, _: usize) -> Self {
+        self
+    }
+}
+
+/// A factor of g for each column and one for the row, and C².
+#[derive(Clone, Copy)]
+struct Sponge<'a>(&'a [f32], f32, f32);
+
+impl Gain for Sponge<'_> {
+    #[inline(always)]
+    fn at(self, i: usize) -> [f32; 2] {
+        let g = self.0[i] * self.1;
+        [g, (0.5 + 0.5 * g) * self.2]
+    }
+    #[inline(always)]
+    fn inner(self, count: usize) -> Self {
+        Self(&self.0[1..][..count], self.1, self.2)
+    }
+}
+
 /// Relative c² of a row's faces.
 struct Faces<'a> {
     east: &'a [f32],
@@ -127,61 +156,87 @@ struct Faces<'a> {
     south: &'a [f32],
 }
 
-/// Five-point row over constant depth.
+/// u⁺ of one cell from u⁻, u and Lu.
 #[inline(always)]
-fn five_row(out: &mut [f32], here: &[f32], n: &[f32], s: &[f32], wraps: bool, c2: f32, g: impl Fn(usize) -> f32) {
+fn next(before: f32, u: f32, [g, r]: [f32; 2], sum: f32) -> f32 {
+    flushed(u + (g * (u - before) + r * sum))
+}
+
+#[inline(always)]
+fn five(u: f32, [w, e, n, s]: [f32; 4]) -> f32 {
+    (w + e) + (n + s) - 4.0 * u
+}
+
+#[inline(always)]
+fn nine(u: f32, [w, e, n, s]: [f32; 4], [nw, ne, sw, se]: [f32; 4]) -> f32 {
+    let corners = (nw + ne) + (sw + se);
+    (4.0 * ((w + e) + (n + s)) + corners - 20.0 * u) * (1.0 / 6.0)
+}
+
+/// A row without its last two, its first and last, and its first two cells: west, middle and east of the inner cells.
+#[inline(always)]
+fn inner(row: &[f32], count: usize) -> [&[f32]; 3] {
+    [&row[..count], &row[1..][..count], &row[2..][..count]]
+}
+
+/// Columns that count as west of the first cell and east of the last.
+#[inline(always)]
+fn around(m: usize, wraps: bool) -> (usize, usize) {
+    if wraps { (m - 1, 0) } else { (0, m - 1) }
+}
+
+/// Five-point row over constant depth. `g` gives the gain of a column.
+#[inline(always)]
+fn five_row(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], wraps: bool, g: impl Gain) {
     let m = out.len();
-    let (u, n, s) = (&here[..m], &n[..m], &s[..m]);
-    let cell = |before: f32, i: usize, west: f32, east: f32| {
-        let g = g(i);
-        let sum = (west + east) + (n[i] + s[i]) - 4.0 * u[i];
-        flushed(u[i] + (g * (u[i] - before) + (0.5 + 0.5 * g) * c2 * sum))
-    };
-    let (west, east) = if wraps { (m - 1, 0) } else { (0, m - 1) };
-    out[0] = cell(out[0], 0, u[west], u[1]);
-    for i in 1..m - 1 {
-        out[i] = cell(out[i], i, u[i - 1], u[i + 1]);
+    let (west, east) = around(m, wraps);
+    for (i, w, e) in [(0, west, 1), (m - 1, m - 2, east)] {
+        out[i] = next(out[i], u[i], g.at(i), five(u[i], [u[w], u[e], n[i], s[i]]));
     }
-    out[m - 1] = cell(out[m - 1], m - 1, u[m - 2], u[east]);
+    let k = m - 2;
+    let (out, [w, u, e]) = (&mut out[1..][..k], inner(u, k));
+    let (n, s, g) = (&n[1..][..k], &s[1..][..k], g.inner(k));
+    for i in 0..k {
+        out[i] = next(out[i], u[i], g.at(i), five(u[i], [w[i], e[i], n[i], s[i]]));
+    }
 }
 
 /// Nine-point row over constant depth.
 #[inline(always)]
-fn nine_row(out: &mut [f32], here: &[f32], n: &[f32], s: &[f32], wraps: bool, c2: f32, g: impl Fn(usize) -> f32) {
+fn nine_row(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], wraps: bool, g: impl Gain) {
     let m = out.len();
-    let (u, n, s) = (&here[..m], &n[..m], &s[..m]);
-    let c2 = c2 / 6.0;
-    let cell = |before: f32, i: usize, w: usize, e: usize| {
-        let g = g(i);
-        let edges = (u[w] + u[e]) + (n[i] + s[i]);
-        let corners = (n[w] + n[e]) + (s[w] + s[e]);
-        let sum = 4.0 * edges + corners - 20.0 * u[i];
-        flushed(u[i] + (g * (u[i] - before) + (0.5 + 0.5 * g) * c2 * sum))
-    };
-    let (west, east) = if wraps { (m - 1, 0) } else { (0, m - 1) };
-    out[0] = cell(out[0], 0, west, 1);
-    for i in 1..m - 1 {
-        out[i] = cell(out[i], i, i - 1, i + 1);
+    let (west, east) = around(m, wraps);
+    for (i, w, e) in [(0, west, 1), (m - 1, m - 2, east)] {
+        let sum = nine(u[i], [u[w], u[e], n[i], s[i]], [n[w], n[e], s[w], s[e]]);
+        out[i] = next(out[i], u[i], g.at(i), sum);
     }
-    out[m - 1] = cell(out[m - 1], m - 1, m - 2, east);
+    let k = m - 2;
+    let (out, [w, u, e], g) = (&mut out[1..][..k], inner(u, k), g.inner(k));
+    let ([nw, n, ne], [sw, s, se]) = (inner(n, k), inner(s, k));
+    for i in 0..k {
+        let sum = nine(u[i], [w[i], e[i], n[i], s[i]], [nw[i], ne[i], sw[i], se[i]]);
+        out[i] = next(out[i], u[i], g.at(i), sum);
+    }
 }
 
 /// Row over depths that differ: fluxes through faces, so what leaves one cell enters its neighbour.
 #[inline(always)]
-fn faces_row(out: &mut [f32], here: &[f32], n: &[f32], s: &[f32], faces: Faces<'_>, c2: f32, g: impl Fn(usize) -> f32) {
+fn faces_row(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], faces: Faces<'_>, g: impl Gain) {
     let m = out.len();
-    let (u, n, s) = (&here[..m], &n[..m], &s[..m]);
-    let (east, north, south) = (&faces.east[..m], &faces.north[..m], &faces.south[..m]);
-    let cell = |before: f32, i: usize, w: usize, e: usize| {
-        let g = g(i);
+    let Faces { east, north, south } = faces;
+    // The face around the border is 0 unless the field is periodic.
+    for (i, w, e) in [(0, m - 1, 1), (m - 1, m - 2, 0)] {
         let along = east[i] * (u[e] - u[i]) - east[w] * (u[i] - u[w]);
         let across = south[i] * (s[i] - u[i]) - north[i] * (u[i] - n[i]);
-        flushed(u[i] + (g * (u[i] - before) + (0.5 + 0.5 * g) * c2 * (along + across)))
-    };
-    // The face around the border is 0 unless the field is periodic.
-    out[0] = cell(out[0], 0, m - 1, 1);
-    for i in 1..m - 1 {
-        out[i] = cell(out[i], i, i - 1, i + 1);
+        out[i] = next(out[i], u[i], g.at(i), along + across);
     }
-    out[m - 1] = cell(out[m - 1], m - 1, m - 2, 0);
+    let k = m - 2;
+    let (out, [w, u, e], g) = (&mut out[1..][..k], inner(u, k), g.inner(k));
+    let (n, s, north, south) = (&n[1..][..k], &s[1..][..k], &north[1..][..k], &south[1..][..k]);
+    let [west, east, _] = inner(east, k);
+    for i in 0..k {
+        let along = east[i] * (e[i] - u[i]) - west[i] * (u[i] - w[i]);
+        let across = south[i] * (s[i] - u[i]) - north[i] * (u[i] - n[i]);
+        out[i] = next(out[i], u[i], g.at(i), along + across);
+    }
 }

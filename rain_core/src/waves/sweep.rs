@@ -28,7 +28,7 @@ const SHORT: f64 = 0.05;
 /// ℓ, since the difference of two nearly equal erf cancels. A width that is not positive or a coordinate that is not finite
 /// gives 0.
 ///
-/// Error: absolute 2e-14.
+/// Error: absolute 1e-13.
 #[must_use]
 pub fn swept_weight(point_m: [f64; 2], from_m: [f64; 2], to_m: [f64; 2], width_m: f64) -> f64 {
     let (along, across, length) = frame(point_m, from_m, to_m, width_m);

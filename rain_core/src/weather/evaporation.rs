@@ -1,6 +1,7 @@
 //! Potential evaporation from a wet surface.
 
 use super::conditions::WeatherConditions;
+use crate::error::clamped;
 use crate::ops;
 
 /// Saturation vapour pressure over water, 611.2 exp(17.67 T/(T + 243.5)). Units: °C in, Pa out.
@@ -16,8 +17,8 @@ pub fn saturation_vapour_pressure_pa(temperature_c: f64) -> f64 {
 /// Error: 1e-12 °C against bisection of [`saturation_vapour_pressure_pa`].
 #[must_use]
 pub fn dew_point_c(temperature_c: f64, relative_humidity: f64) -> f64 {
-    let t = temperature_c.max(-60.0).min(60.0);
-    let exponent = ops::ln(relative_humidity.max(1e-6).min(1.0)) + 17.67 * t / (t + 243.5);
+    let t = clamped(temperature_c, -60.0, 60.0);
+    let exponent = ops::ln(clamped(relative_humidity, 1e-6, 1.0)) + 17.67 * t / (t + 243.5);
     243.5 * exponent / (17.67 - exponent)
 }
 
@@ -37,7 +38,7 @@ pub fn dalton_evaporation_mm_h(conditions: &WeatherConditions) -> f64 {
 /// Films below 0 and NaN are gone at once. Error: 1e-15 relative; nights range from hours to never.
 #[must_use]
 pub fn drying_time_s(film_mm: f64, evaporation_mm_h: f64) -> Option<f64> {
-    let film = film_mm.max(0.0).min(1e6);
+    let film = clamped(film_mm, 0.0, 1e6);
     if film == 0.0 {
         Some(0.0)
     } else {

@@ -4,9 +4,10 @@
 //! Dormand & Prince 1980, orders 5(4) with the error of the lower order held below [`TOLERANCE`]·max(w, 1e-3 mm) per step;
 //! the higher order is kept. The right side falls with w (its slope is −5/3 κ w^(2/3) ≤ 0), so two solutions never
 //! move apart: local errors add at most, and the error after n steps is below n·tolerance. Steps shrink by themselves
-//! at w → 0, where w^(5/3) is not smooth. Pure drain is exact, w = (w₀^(−2/3) + ⅔ κ t)^(−3/2). Close to equilibrium
+//! at w → 0, where w^(5/3) is not smooth. Over long times without soil the closed form of `film_course` is taken. Pure drain is exact, w = (w₀^(−2/3) + ⅔ κ t)^(−3/2). Close to equilibrium
 //! the deviation δ decays as e^(−λt); δ ≤ 6e-7 w there, and what is left out is of the order (δ/w)².
 
+use super::film_course::{towards_equilibrium, towards_nothing};
 use super::horton::HortonCurve;
 use crate::ops;
 
@@ -14,6 +15,9 @@ use crate::ops;
 const TOLERANCE: f64 = 1e-11;
 /// Below this film the tolerance no longer shrinks. Units: mm.
 const TOLERANCE_FLOOR_MM: f64 = 1e-3;
+
+/// Decay times beyond which the closed form is cheaper than steps.
+const LONG: f64 = 0.3;
 
 /// Supply and drain that differ by less than this share are close to equilibrium.
 const NEAR_EQUILIBRIUM: f64 = 1e-6;
@@ -49,6 +53,11 @@ impl FilmFlow {
         // The first step is a guess: a twentieth of the time scale that the film will have.
         let ahead = w + self.supply.max(0.0) * duration;
         let stiffness = 5.0 / 3.0 * self.drain * cbrt_square(ahead);
+        if stiffness * duration > LONG
+            && let Some(step) = self.course(w, duration)
+        {
+            return step;
+        }
         let mut step = duration.min(if stiffness > 0.0 { 0.05 / stiffness } else { duration });
         loop {
             let left = duration - t;
@@ -119,6 +128,36 @@ impl FilmFlow {
         let equilibrium = ops::pow(net / self.drain, 0.6);
         let decay = 5.0 / 3.0 * net / equilibrium;
         Some(equilibrium + (w - equilibrium) * ops::exp(-decay * left))
+    }
+
+    /// The closed form for constant supply; dear, but as much for any time.
+    fn course(&self, w: f64, duration: f64) -> Option<FilmStep> {
+        if self.soil.is_some() || self.supply == 0.0 || self.drain == 0.0 {
+            return None;
+        }
+        let scale = ops::pow(self.supply.abs() / self.drain, 0.6);
+        let (u, time) = (ops::cbrt(w / scale), self.supply.abs() * duration / scale);
+        // Far above the scale the course is nearly a pure drain, and the closed form cancels.
+        if u.is_nan() || u >= 50.0 || u == 1.0 {
+            return None;
+        }
+        let end = if self.supply > 0.0 {
+            towards_equilibrium(u, time)
+        } else {
+            match towards_nothing(u, time) {
+                Ok(end) => end,
+                Err(gone) => {
+                    return Some(FilmStep {
+                        time: (gone * scale / -self.supply).min(duration),
+                        film: 0.0,
+                    });
+                }
+            }
+        };
+        Some(FilmStep {
+            time: duration,
+            film: scale * end * end * end,
+        })
     }
 
     fn rate(&self, t: f64, w: f64) -> f64 {

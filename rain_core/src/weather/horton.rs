@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 
 /// Horton's infiltration capacity f = f_c + (f₀ − f_c) e^(−kτ), with a recovery in dry spells. Source: Horton 1940.
@@ -70,7 +70,7 @@ impl Infiltration {
     /// those above 1e9 s as 1e9 s. Domain: valid parameters. Error: 1e-13 relative.
     #[must_use]
     pub fn flooded_mm(&self, time_s: f64) -> f64 {
-        self.curve().depth(0.0, time_s.max(0.0).min(1e9))
+        self.curve().depth(0.0, clamped(time_s, 0.0, 1e9))
     }
 
     /// How long the dry soil takes all of a constant rain: until its capacity, which falls with what infiltrates, is

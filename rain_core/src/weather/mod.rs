@@ -10,6 +10,7 @@
 //! | `surface_class.rs` | what asphalt, stone, grass … do with water |
 //! | `store.rs` | an account of water that loses nothing to rounding |
 //! | `horton.rs` | infiltration into soil |
+//! | `film_course.rs` | the film under constant supply and drain in closed form |
 //! | `film_flow.rs` | the film above the texture: supply against drain |
 //! | `column.rs` | pores and film of one surface, the physical way |
 //! | `artist.rs` | wetness and water levels, the artists' way |
@@ -19,6 +20,7 @@ mod artist;
 mod column;
 mod conditions;
 mod evaporation;
+mod film_course;
 mod film_flow;
 mod horton;
 mod hyetograph;

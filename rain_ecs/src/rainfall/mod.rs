@@ -3,7 +3,7 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::DVec3;
-use rain_core::constants::AIR_DENSITY;
+use rain_core::rainfall::terminal_velocity::air_density_kg_m3;
 use rain_core::rainfall::{Distribution, FieldMotion, Spectrum};
 use rain_core::weather::WeatherConditions;
 
@@ -91,16 +91,14 @@ impl RainfallField {
             }
         }
         self.wind_m_s = conditions.wind_m_s;
-        self.motion.set_velocity(self.wind_m_s, air_density(conditions));
+        let density = air_density_kg_m3(
+            conditions.pressure_pa,
+            conditions.air_temperature_c,
+            conditions.relative_humidity,
+        );
+        self.motion.set_velocity(self.wind_m_s, density);
         self.motion.advance(seconds);
     }
-}
-
-/// Density of dry air. Units: kg/m³.
-fn air_density(conditions: &WeatherConditions) -> f64 {
-    const GAS_CONSTANT: f64 = 287.05;
-    let density = conditions.pressure_pa / (GAS_CONSTANT * (conditions.air_temperature_c + 273.15));
-    if density.is_finite() { density } else { AIR_DENSITY }
 }
 
 impl HashState for RainfallField {

@@ -18,8 +18,7 @@ fn drop_radiance(from_eye: vec3<f32>) -> vec3<f32> {
     let refracted = surroundings(from_eye, 0.55);
     let reflected = surroundings(vec3<f32>(-from_eye.x, max(0.2, -from_eye.y), -from_eye.z), 0.9);
     let theta = acos(clamp(dot(from_eye, view.sun_direction.xyz), -1.0, 1.0));
-    let sun = view.sun.rgb * (RAIN_DROP_TRANSMITTED * rain_drop_phase(theta) + RAIN_DROP_REFLECTED * 0.0795775);
-    return RAIN_DROP_TRANSMITTED * refracted + RAIN_DROP_REFLECTED * reflected + sun;
+    return rain_drop_radiance(refracted, reflected, view.sun.rgb, theta);
 }
 
 fn to_pixels(clip: vec4<f32>) -> vec2<f32> {

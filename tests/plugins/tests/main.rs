@@ -8,6 +8,7 @@ mod groups;
 mod hash_parity;
 mod materials;
 mod optical_depth;
+mod shader_functions;
 mod skipping;
 mod two_views;
 mod wet_albedo;

@@ -20,7 +20,7 @@ pub use gunn_kinzer::{GUNN_KINZER, gunn_kinzer};
 pub use speed_table::SpeedTable;
 
 /// Coefficients of the least-squares fit to Gunn & Kinzer 1949 in t = D/3 − 1, D in mm, v in m/s.
-const FIT: [f64; 9] = [
+pub(super) const FIT: [f64; 9] = [
     2.689_075,
     -1.586_889,
     0.307_166,

@@ -59,6 +59,11 @@ pub struct Basin {
     /// Area whose water runs into it. Units: m².
     pub catchment_m2: f64,
     pub(super) jump: u32,
+    /// Cells and water of the children when full.
+    base_cells: u32,
+    base_volume: f64,
+    /// Basins without children in it, or 1.
+    pub(super) leaves: u32,
     curve: Stretch,
 }
 
@@ -126,6 +131,15 @@ impl Basins {
     fn assemble(grid: &Grid, catchments: Catchments, hierarchy: &Hierarchy, inlets: &[(usize, Inlet)]) -> Self {
         let mut labels = catchments.labels;
         let count = hierarchy.nodes.len();
+        let tops = hierarchy.top_levels();
+        // Most cells are dry.
+        let holder = |label: u32, height: f64| {
+            if label & DRY == 0 && height < tops[label as usize] {
+                hierarchy.holder(label, height)
+            } else {
+                NOBODY
+            }
+        };
         let mut catchment_cells = vec![0_u64; count];
         let mut own_cells = vec![0_usize; count];
         let mut off_map = 0_u64;
@@ -138,11 +152,9 @@ impl Basins {
                 continue;
             }
             catchment_cells[(*label & !DRY) as usize] += 1;
-            if *label & DRY == 0 {
-                let holder = hierarchy.holder(*label, height);
-                if holder != NOBODY {
-                    own_cells[holder as usize] += 1;
-                }
+            let holder = holder(*label, height);
+            if holder != NOBODY {
+                own_cells[holder as usize] += 1;
             }
         }
         let mut starts = vec![0; count + 1];
@@ -152,13 +164,11 @@ impl Basins {
         let mut ends = starts.clone();
         let mut depths = vec![0.0; starts[count]];
         for (&label, &height) in labels.iter().zip(grid.heights) {
-            if label & DRY == 0 {
-                let holder = hierarchy.holder(label, height);
-                if holder != NOBODY {
-                    let end = &mut ends[holder as usize];
-                    depths[*end] = height - hierarchy.nodes[holder as usize].bottom;
-                    *end += 1;
-                }
+            let holder = holder(label, height);
+            if holder != NOBODY {
+                let end = &mut ends[holder as usize];
+                depths[*end] = height - hierarchy.nodes[holder as usize].bottom;
+                *end += 1;
             }
         }
         let mut baked = Self {
@@ -232,6 +242,11 @@ impl Basins {
             area_m2: wet as f64 * area,
             catchment_m2: catchment as f64 * area,
             jump: node.jump,
+            base_cells: base.2,
+            base_volume,
+            leaves: children.map_or(1, |children| {
+                children.iter().map(|&child| self.basins[child as usize].leaves).sum()
+            }),
             curve,
         });
     }
@@ -273,18 +288,12 @@ impl Basins {
     #[must_use]
     pub fn curve(&self, basin: u32) -> Curve<'_> {
         let at = &self.basins[basin as usize];
-        let wet = (at.area_m2 / (self.cell_m * self.cell_m)).round() as u32;
         Curve {
             depths: &self.depths[at.curve.start..at.curve.end],
             volumes: &self.volumes[at.curve.start..at.curve.end],
-            base_cells: wet - (at.curve.end - at.curve.start) as u32,
+            base_cells: at.base_cells,
             base_depth: at.sill_m - at.bottom_m,
-            base_volume: at.children.map_or(0.0, |children| {
-                children
-                    .iter()
-                    .filter_map(|&child| self.basins[child as usize].volume_m3)
-                    .sum()
-            }),
+            base_volume: at.base_volume,
             spill_depth: at.spill_m.map_or(f64::INFINITY, |spill| spill - at.bottom_m),
             capacity: at.volume_m3.unwrap_or(f64::INFINITY),
             cell_area: self.cell_m * self.cell_m,
@@ -414,7 +423,10 @@ impl Basins {
         BakeReport {
             cells: self.cells,
             cell_m: self.cell_m,
-            total_volume_m3: top.filter_map(|basin| basin.volume_m3).sum(),
+            // Not `sum`, which makes nothing -0.
+            total_volume_m3: top
+                .filter_map(|basin| basin.volume_m3)
+                .fold(0.0, |sum, volume| sum + volume),
             basins,
         }
     }

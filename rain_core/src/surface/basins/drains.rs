@@ -2,40 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::constants::GRAVITY;
 use crate::error::{ConfigError, in_range};
 use crate::ops;
+use crate::surface::Grate;
 
-/// Weir coefficient of a grate. Units: m^0.5/s. Source: Brown et al. 2009, HEC-22, eq. 4-26.
-const WEIR: f64 = 1.66;
-/// Orifice coefficient of a grate. Units: none. Source: Brown et al. 2009, HEC-22, eq. 4-27.
-const ORIFICE: f64 = 0.67;
 /// Depth of the first knot at which an inlet's flow is tabulated; knot j lies at j² times it. Units: m.
 const KNOT_M: f64 = 1e-6;
-
-/// Flow over the rim of a grate. Units: m³/s.
-///
-/// 1.66 P d^1.5, perimeter P without the side along a kerb (m), depth d (m). Negative or NaN counts as 0, more than 1e6
-/// as 1e6. Source: Brown et al. 2009. Error: against the same formula in another arithmetic below 1e-14; nature: depths below about
-/// 0.12 m, grates free of leaves.
-#[must_use]
-pub fn weir_flow_m3_s(perimeter_m: f64, depth_m: f64) -> f64 {
-    let depth = bounded(depth_m);
-    WEIR * bounded(perimeter_m) * depth * ops::sqrt(depth)
-}
-
-/// Flow through the openings of a drowned grate. Units: m³/s.
-///
-/// 0.67 A √(2 g d), clear area A (m²), depth d (m). Negative or NaN counts as 0, more than 1e6 as 1e6.
-/// Source: Brown et al. 2009. Error: as for [`weir_flow_m3_s`]; nature: depths above about 0.43 m.
-#[must_use]
-pub fn orifice_flow_m3_s(area_m2: f64, depth_m: f64) -> f64 {
-    ORIFICE * bounded(area_m2) * ops::sqrt(2.0 * GRAVITY * bounded(depth_m))
-}
-
-fn bounded(value: f64) -> f64 {
-    if value > 0.0 { value.min(1e6) } else { 0.0 }
-}
 
 /// How much an inlet takes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -46,13 +18,8 @@ pub enum Inlet {
         /// Units: m³/s. Domain: [0, 1e3].
         capacity_m3_s: f64,
     },
-    /// A grate: the smaller of [`weir_flow_m3_s`] and [`orifice_flow_m3_s`].
-    Grate {
-        /// Rim over which water flows. Units: m. Domain: [0, 1e3].
-        perimeter_m: f64,
-        /// Clear area of the openings. Units: m². Domain: [0, 1e3].
-        area_m2: f64,
-    },
+    /// What a grate takes at the depth over it.
+    Grate(Grate),
     /// Takes everything: the cell is a hole in the ground, like one that is not a number.
     Hole,
 }
@@ -64,13 +31,7 @@ impl Inlet {
     pub fn flow_m3_s(&self, depth_m: f64) -> f64 {
         match *self {
             Self::Constant { capacity_m3_s } if depth_m > 0.0 => capacity_m3_s,
-            Self::Grate { perimeter_m, area_m2 } => {
-                let (weir, orifice) = (
-                    weir_flow_m3_s(perimeter_m, depth_m),
-                    orifice_flow_m3_s(area_m2, depth_m),
-                );
-                if weir < orifice { weir } else { orifice }
-            }
+            Self::Grate(grate) => grate.capacity_m3_s(depth_m),
             Self::Constant { .. } | Self::Hole => 0.0,
         }
     }
@@ -80,14 +41,12 @@ impl Inlet {
     /// # Errors
     /// When a capacity, perimeter or area is negative, above 1000 or not finite.
     pub fn validated(self) -> Result<Self, ConfigError> {
-        let check = |field, value| in_range(field, value, 0.0, 1e3, "0 to 1000");
         match self {
             Self::Constant { capacity_m3_s } => {
-                check("capacity_m3_s", capacity_m3_s)?;
+                in_range("capacity_m3_s", capacity_m3_s, 0.0, 1e3, "0 to 1000 m³/s")?;
             }
-            Self::Grate { perimeter_m, area_m2 } => {
-                check("perimeter_m", perimeter_m)?;
-                check("area_m2", area_m2)?;
+            Self::Grate(grate) => {
+                grate.validated()?;
             }
             Self::Hole => {}
         }
@@ -123,7 +82,7 @@ impl BasinDrain {
     /// [`Inlet::flow_m3_s`] above 10 mm (0.4/j² of it at knot j).
     pub(super) fn flow(&self, depth: f64) -> f64 {
         match self.inlet {
-            Inlet::Grate { .. } if depth > 0.0 => {
+            Inlet::Grate(_) if depth > 0.0 => {
                 let knot = knot_below(depth);
                 let (low, high) = (knot_depth(knot), knot_depth(knot + 1.0));
                 let (from, to) = (self.inlet.flow_m3_s(low), self.inlet.flow_m3_s(high));
@@ -147,7 +106,7 @@ impl BasinDrain {
         if depth < base {
             return base;
         }
-        if !matches!(self.inlet, Inlet::Grate { .. }) {
+        if !matches!(self.inlet, Inlet::Grate(_)) {
             return f64::INFINITY;
         }
         let mut knot = knot_below(depth - base);
@@ -162,7 +121,7 @@ impl BasinDrain {
         if depth <= base {
             return f64::NEG_INFINITY;
         }
-        if !matches!(self.inlet, Inlet::Grate { .. }) {
+        if !matches!(self.inlet, Inlet::Grate(_)) {
             return base;
         }
         let mut knot = knot_below(depth - base) + 1.0;

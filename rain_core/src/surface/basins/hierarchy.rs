@@ -77,6 +77,18 @@ impl Hierarchy {
         builder.finish(&dropped)
     }
 
+    /// For each basin the spill level of the one at the top above it.
+    pub(super) fn top_levels(&self) -> Vec<f64> {
+        let mut levels: Vec<f64> = self.nodes.iter().map(|node| node.spill).collect();
+        for index in (0..levels.len()).rev() {
+            let parent = self.nodes[index].parent;
+            if parent != NOBODY {
+                levels[index] = levels[parent as usize];
+            }
+        }
+        levels
+    }
+
     /// The lowest basin on the way up from `leaf` whose spill level is above `height`.
     pub(super) fn holder(&self, leaf: u32, height: f64) -> u32 {
         let mut at = leaf;

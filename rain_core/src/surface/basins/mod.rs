@@ -21,10 +21,11 @@ mod hierarchy;
 mod march;
 mod run;
 mod state;
+mod step;
 
 pub use bake::{BakeOptions, BakeReport, Basin, BasinRow, Basins};
 pub use curve::Curve;
-pub use drains::{BasinDrain, Drain, Inlet, orifice_flow_m3_s, weir_flow_m3_s};
+pub use drains::{BasinDrain, Drain, Inlet};
 pub use grid::Grid;
 pub use run::{BasinForcing, BasinRun};
 pub use state::{BasinLedger, BasinState};

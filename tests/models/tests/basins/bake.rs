@@ -256,6 +256,20 @@ fn pools_that_touch_only_at_their_brim_are_separate_and_spill_one_way() {
 }
 
 #[test]
+fn a_pool_that_reaches_the_border_leaves_there() {
+    // Rain on the border cell of 4 runs into the deeper pit; pools that reach the cell leave the map over it.
+    let baked = bake(&drawn(&["9999499", "9133909", "9999999"]));
+    let rows = baked.report().basins;
+    assert_eq!(rows.len(), 2);
+    assert!(
+        rows.iter()
+            .all(|row| (row.spill_m, row.overflows_to) == (Some(4.0), None))
+    );
+    assert_eq!(baked.leaf_at(4), baked.leaf_at(7 + 5));
+    assert_ne!(baked.leaf_at(4), baked.leaf_at(7 + 3));
+}
+
+#[test]
 fn flats_border_pits_holes_and_single_cells_have_no_basin() {
     for rows in [
         &["0"][..],
@@ -268,7 +282,8 @@ fn flats_border_pits_holes_and_single_cells_have_no_basin() {
         &["9 9", " 1 ", "9 9"],
     ] {
         let report = bake(&drawn(rows)).report();
-        assert!(report.basins.is_empty() && report.total_volume_m3 == 0.0, "{rows:?}");
+        assert!(report.basins.is_empty(), "{rows:?}");
+        assert_eq!(report.total_volume_m3.to_bits(), 0, "not -0");
     }
     let ring = bake(&drawn(&["99999", "90009", "90909", "90009", "99999"])).report();
     assert_eq!(ring.basins.len(), 1, "a flat pit around a hill");

@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use rain_core::surface::basins::{
-    BakeOptions, BasinForcing, BasinRun, Basins, Drain, Grid, Inlet, orifice_flow_m3_s, weir_flow_m3_s,
-};
+use rain_core::surface::Grate;
+use rain_core::surface::basins::{BakeOptions, BasinForcing, BasinRun, Basins, Drain, Grid, Inlet};
 use rain_reference::basins::{Field, inlet};
 use rain_reference::numerics::runge_kutta;
 
@@ -26,14 +25,10 @@ fn with_drain(field: &Field, drains: Vec<Drain>) -> BasinRun {
 #[test]
 fn inlets_take_what_the_manual_says() {
     let mut worst = Worst::default();
-    worst.relative(weir_flow_m3_s(1.2, 0.02), 5.6342e-3, 1e-9, || "weir".into());
-    worst.relative(orifice_flow_m3_s(0.05, 0.1), 4.6916e-2, 1e-9, || "orifice".into());
-    worst.assert_below(1e-5, 2);
-    let mut worst = Worst::default();
-    let grate = Inlet::Grate {
+    let grate = Inlet::Grate(Grate {
         perimeter_m: 1.2,
         area_m2: 0.05,
-    };
+    });
     for step in 0..4000 {
         let depth = 1e-6 * 1.004_f64.powi(step);
         worst.relative(grate.flow_m3_s(depth), inlet(1.2, 0.05, depth), 1e-300, || {
@@ -52,11 +47,6 @@ fn inlets_take_what_the_manual_says() {
 #[test]
 fn inlets_are_finite_and_checked() {
     for depth in [f64::NAN, f64::NEG_INFINITY, -1.0, 0.0, 1e-300, 1e300, f64::INFINITY] {
-        for width in [f64::NAN, -1.0, 0.0, 1.0, f64::INFINITY] {
-            for flow in [weir_flow_m3_s(width, depth), orifice_flow_m3_s(width, depth)] {
-                assert!(flow.is_finite() && flow >= 0.0);
-            }
-        }
         let flow = Inlet::Constant { capacity_m3_s: 1.0 }.flow_m3_s(depth);
         assert_eq!(flow, if depth > 0.0 { 1.0 } else { 0.0 });
         assert_eq!(Inlet::Hole.flow_m3_s(depth), 0.0);
@@ -64,18 +54,18 @@ fn inlets_are_finite_and_checked() {
     for value in [f64::NAN, -1.0, f64::INFINITY, 1e4] {
         assert!(Inlet::Constant { capacity_m3_s: value }.validated().is_err());
         assert!(
-            Inlet::Grate {
+            Inlet::Grate(Grate {
                 perimeter_m: value,
                 area_m2: 0.1
-            }
+            })
             .validated()
             .is_err()
         );
         assert!(
-            Inlet::Grate {
+            Inlet::Grate(Grate {
                 perimeter_m: 1.0,
                 area_m2: value
-            }
+            })
             .validated()
             .is_err()
         );
@@ -105,10 +95,10 @@ fn a_grate_holds_the_level_that_an_integration_gives() {
     let drain = Drain {
         x_m: 2.5,
         z_m: 2.5,
-        inlet: Inlet::Grate {
+        inlet: Inlet::Grate(Grate {
             perimeter_m: 1.2,
             area_m2: 0.05,
-        },
+        }),
     };
     let mut worst = Worst::default();
     for inflow in [1e-3, 5e-3, 3e-2] {
@@ -190,7 +180,7 @@ proptest! {
             inlet: if pick(turn + 20) < 0.5 {
                 Inlet::Constant { capacity_m3_s: 0.02 * pick(turn + 30) }
             } else {
-                Inlet::Grate { perimeter_m: pick(turn + 40), area_m2: 0.1 * pick(turn + 50) }
+                Inlet::Grate(Grate { perimeter_m: pick(turn + 40), area_m2: 0.1 * pick(turn + 50) })
             },
         });
         let start = with_drain(&field, drains.collect());

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
+use rain_core::surface::Grate;
 use rain_core::surface::basins::{BakeOptions, BasinForcing, BasinRun, Basins, Drain, Grid, Inlet};
 
 use super::terrain::{bake, config, drawn, heights, small_fields, unit};
@@ -13,7 +14,7 @@ proptest! {
     #[test]
     fn no_history_loses_water(field in small_fields(), seed in any::<u32>()) {
         let pick = |turn: u64, what: u64| unit(turn, what, u64::from(seed));
-        let inlet = Inlet::Grate { perimeter_m: 0.4, area_m2: 0.01 };
+        let inlet = Inlet::Grate(Grate { perimeter_m: 0.4, area_m2: 0.01 });
         let drains = vec![Drain { x_m: pick(0, 20) * field.nx as f64 * 0.5, z_m: pick(1, 20) * field.nz as f64 * 0.5, inlet }];
         let options = BakeOptions { closed: field.closed, threshold_m: pick(2, 20) * 0.2, drains };
         let baked = Arc::new(Basins::bake(&Grid::new(field.nx, field.nz, field.cell, &field.z), &options).unwrap());

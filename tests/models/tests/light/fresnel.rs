@@ -77,7 +77,7 @@ fn reflectance_is_fresnels_by_angles() {
         }
     }
     from_outside.assert_below(1e-12, 18_000);
-    from_inside.assert_below(1e-11, 6_000);
+    from_inside.assert_below(1e-12, 6_000);
     cheap.assert_below(1e-14, 6_000);
 
     let [s, p] = reference::fresnel(1.0, 1.0, N);
@@ -89,11 +89,12 @@ fn reflectance_is_fresnels_by_angles() {
 
 #[test]
 fn single_precision_reflectance_is_the_double_one() {
-    let (mut worst, mut cheap) = (Worst::default(), Worst::default());
+    let (mut outside, mut inside, mut cheap) = (Worst::default(), Worst::default(), Worst::default());
     for n in [1.1_f32, 1.333, 1.5, 2.0, 1.0 / 1.333, 0.5] {
         for i in 0..=20_000_u16 {
             let c = f32::from(i) / 20_000.0;
             let square = f64::from(n) * f64::from(n) - 1.0 + f64::from(c) * f64::from(c);
+            let worst = if n > 1.0 { &mut outside } else { &mut inside };
             if square.abs() > 2e-5 || n > 1.0 {
                 worst.absolute(
                     f64::from(fresnel_f32(c, n)),
@@ -109,7 +110,8 @@ fn single_precision_reflectance_is_the_double_one() {
             );
         }
     }
-    worst.assert_below(1e-5, 100_000);
+    outside.assert_below(5e-7, 80_000);
+    inside.assert_below(1e-5, 30_000);
     cheap.assert_below(3e-7, 100_000);
     assert_eq!(fresnel_f32(0.0, 1.333), 1.0);
     assert_eq!(fresnel_f32(0.1, 1.0 / 1.333), 1.0);
@@ -148,8 +150,8 @@ fn the_diffuse_mean_is_the_integral_also_near_one() {
         absolute.absolute(hemispherical_mean(n), mean, || format!("{n}"));
         relative.relative(hemispherical_mean(n), mean, 1e-30, || format!("{n}"));
     }
-    absolute.assert_below(1e-9, 12);
-    relative.assert_below(1e-7, 12);
+    absolute.assert_below(1e-13, 12);
+    relative.assert_below(1e-11, 12);
     assert_eq!(hemispherical_mean(1.0), 0.0);
     // Both forms meet.
     assert!((hemispherical_mean(1.02 - 1e-9) - hemispherical_mean(1.02 + 1e-9)).abs() < 1e-9);

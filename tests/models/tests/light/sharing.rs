@@ -111,9 +111,9 @@ fn ramps_are_integrated_exactly() {
             mid.absolute(mid_depth_m(s, z), slow, || format!("{s} {z}"));
         }
     }
-    sum.assert_below(1e-12, 15);
-    near.assert_below(1e-12, 90);
-    mid.assert_below(1e-12, 90);
+    sum.assert_below(1e-13, 15);
+    near.assert_below(1e-13, 90);
+    mid.assert_below(1e-13, 90);
     assert!((ramp(3.0, 2.0, 5.0) - reference::smooth(3.0, 2.0, 5.0)).abs() < 1e-15);
     let wrong =
         near_depth_m(20.0, 9.0 * 1.05) - reference::along(20.0, &corners(9.0), |x| reference::near_weight(x, 9.0));
@@ -157,7 +157,7 @@ fn the_table_is_the_integral_over_diameters() {
                 });
             }
             // In metres of rain.
-            worst.assert_below(0.04, 121);
+            worst.assert_below(if mid_tier { 0.02 } else { 0.003 }, 121);
         }
     }
 }

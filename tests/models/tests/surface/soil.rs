@@ -1,7 +1,7 @@
 //! Green & Ampt's front, inlets.
 
 use proptest::prelude::*;
-use rain_core::surface::{GreenAmpt, Inlet, SoilTexture};
+use rain_core::surface::{Grate, GreenAmpt, SoilTexture};
 use rain_reference::surface as truth;
 
 use super::{ANY, config, log_spaced};
@@ -114,6 +114,8 @@ fn the_front_clamps_and_refuses() {
             assert!(soil.capacity_mm_h(a).is_finite() && soil.capacity_mm_h(a) >= soil.conductivity_mm_h);
             assert!(soil.ponding_time_h(a).is_none_or(|t| t.is_finite() && t >= 0.0), "{a}");
             for b in ANY {
+                let f = soil.flooded_from_mm(a, b);
+                assert!(f.is_finite() && f >= 0.0, "{a} {b}: {f}");
                 for c in ANY {
                     let f = soil.infiltrated_mm(a, b, c);
                     assert!(f.is_finite() && f >= 0.0, "{a} {b} {c}: {f}");
@@ -178,10 +180,12 @@ proptest! {
         prop_assert!(soil.infiltrated_mm(0.0, rain, hours + 0.1) >= whole, "more time");
         let paused = soil.infiltrated_mm(soil.infiltrated_mm(whole, 0.0, 9.0), rain, 1.0);
         prop_assert_eq!(paused, soil.infiltrated_mm(whole, rain, 1.0), "a pause uses nothing up");
+        let flooded = soil.flooded_from_mm(soil.flooded_mm(0.3 * hours), 0.7 * hours);
+        prop_assert!((flooded - soil.flooded_mm(hours)).abs() <= 1e-12 * flooded);
     }
 }
 
-const GULLY: Inlet = Inlet {
+const GULLY: Grate = Grate {
     perimeter_m: 1.2,
     area_m2: 0.05,
 };
@@ -237,7 +241,7 @@ fn inlets_clamp_and_refuse() {
             for c in ANY {
                 for inlet in [
                     GULLY,
-                    Inlet {
+                    Grate {
                         perimeter_m: 0.0,
                         ..GULLY
                     },
@@ -249,17 +253,17 @@ fn inlets_clamp_and_refuse() {
         }
         if a.is_nan() || !(0.0..=1e3).contains(&a) {
             assert!(
-                Inlet {
+                Grate {
                     perimeter_m: a,
                     ..GULLY
                 }
                 .validated()
                 .is_err()
             );
-            assert!(Inlet { area_m2: a, ..GULLY }.validated().is_err());
+            assert!(Grate { area_m2: a, ..GULLY }.validated().is_err());
         }
     }
-    let shut = Inlet {
+    let shut = Grate {
         perimeter_m: 0.0,
         area_m2: 0.0,
     };

@@ -7,8 +7,10 @@
 //! In sag, unclogged; a clogging allowance belongs in P and A (half of each is usual). Between the two laws the real
 //! curve is smooth and lower by up to about 10 %.
 
+use serde::{Deserialize, Serialize};
+
 use crate::constants::GRAVITY;
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 
 /// Weir coefficient. Units: m^0.5/s.
@@ -18,17 +20,18 @@ const ORIFICE: f64 = 0.67;
 /// Depths beyond this count as this. Units: m.
 const MAX_DEPTH_M: f64 = 100.0;
 
-/// A grate inlet.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inlet {
+/// A grate in the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grate {
     /// Length of the edge that water falls over P. Units: m. Domain: [0, 1000]. 0: shut.
     pub perimeter_m: f64,
     /// Clear opening A. Units: m². Domain: [0, 1000]. 0: shut.
     pub area_m2: f64,
 }
 
-impl Inlet {
-    /// This inlet, if its sizes lie in their domains.
+impl Grate {
+    /// This grate, if its sizes lie in their domains.
     ///
     /// # Errors
     /// Names the first that does not.
@@ -42,14 +45,14 @@ impl Inlet {
     /// Error: 1e-15 relative.
     #[must_use]
     pub fn weir_m3_s(&self, depth_m: f64) -> f64 {
-        let d = depth_m.max(0.0).min(MAX_DEPTH_M);
+        let d = clamped(depth_m, 0.0, MAX_DEPTH_M);
         WEIR * self.perimeter_m * d * ops::sqrt(d)
     }
 
     /// Flow through the openings. Units: m³/s, depth in m. Clamps as [`Self::weir_m3_s`]. Error: 1e-15 relative.
     #[must_use]
     pub fn orifice_m3_s(&self, depth_m: f64) -> f64 {
-        let d = depth_m.max(0.0).min(MAX_DEPTH_M);
+        let d = clamped(depth_m, 0.0, MAX_DEPTH_M);
         ORIFICE * self.area_m2 * ops::sqrt(2.0 * GRAVITY * d)
     }
 
@@ -76,8 +79,8 @@ impl Inlet {
     /// area 0 or NaN is empty at once. Error: 3e-8 relative against 20 000 Runge–Kutta steps across the kink.
     #[must_use]
     pub fn drained_depth_m(&self, depth_m: f64, pond_area_m2: f64, time_s: f64) -> f64 {
-        let mut root = ops::sqrt(depth_m.max(0.0).min(MAX_DEPTH_M));
-        let mut left = time_s.max(0.0).min(1e9);
+        let mut root = ops::sqrt(clamped(depth_m, 0.0, MAX_DEPTH_M));
+        let mut left = clamped(time_s, 0.0, 1e9);
         if left == 0.0 || root == 0.0 || self.perimeter_m == 0.0 || self.area_m2 == 0.0 {
             return root * root;
         }

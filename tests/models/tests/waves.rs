@@ -1,1 +1,0 @@
-//! Water waves: dispersion, discrete modes, open-water integrals.
