@@ -133,15 +133,6 @@ impl Key {
             Kind::File => "the path of a file".into(),
         }
     }
-
-    /// The default in words.
-    #[must_use]
-    pub fn default_words(&self) -> &'static str {
-        match self.default {
-            Default::Required => "required",
-            Default::Value(text) | Default::Words(text) => text,
-        }
-    }
 }
 
 /// One value that a model returns.

@@ -172,14 +172,11 @@ fn text_list(models: &[&Model]) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(out, "{}: {}", model.name, model.what);
         for key in model.keys {
-            let _ = writeln!(
-                out,
-                "  {:<24} {} ({}; default: {})",
-                key.name,
-                key.what,
-                key.allowed(),
-                key.default_words()
-            );
+            let default = match key.default {
+                Default::Required => "required".to_owned(),
+                Default::Value(text) | Default::Words(text) => format!("default: {text}"),
+            };
+            let _ = writeln!(out, "  {:<24} {} ({}; {default})", key.name, key.what, key.allowed());
         }
         let names: Vec<&str> = model.returns.iter().map(|r| r.name).collect();
         let _ = writeln!(out, "  returns {}\n", names.join(", "));

@@ -2,57 +2,49 @@
 
 use std::fmt::Write as _;
 
-use serde_json::{Map, Number, Value};
-
 use super::key::Returned;
 
-/// Named values in order. Numbers are finite.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Output(Vec<(&'static str, Value)>);
-
-/// A number as JSON; what is not finite becomes null, which [`Output::is_finite`] finds.
-fn number(value: f64) -> Value {
-    Number::from_f64(value).map_or(Value::Null, Value::Number)
+/// One returned value.
+#[derive(Debug, Clone, PartialEq)]
+enum Field {
+    Number(f64),
+    Flag(bool),
+    /// A series; all rows have the same names.
+    Rows(Vec<Output>),
+    Object(Output),
 }
 
+/// Named values in order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Output(Vec<(&'static str, Field)>);
+
 impl Output {
-    /// Values of these names.
+    /// Numbers of these names.
     #[must_use]
     pub fn new<const N: usize>(values: [(&'static str, f64); N]) -> Self {
-        Self(values.into_iter().map(|(name, value)| (name, number(value))).collect())
+        // Adding zero makes −0 into 0.
+        Self(values.map(|(name, value)| (name, Field::Number(value + 0.0))).into())
     }
 
     /// The same with `name` set to true or false.
     #[must_use]
     pub fn flag(mut self, name: &'static str, value: bool) -> Self {
-        self.0.push((name, Value::Bool(value)));
+        self.0.push((name, Field::Flag(value)));
         self
     }
 
-    /// The same with a list of outputs.
+    /// The same with a series.
     #[must_use]
-    pub fn list(mut self, name: &'static str, rows: Vec<Self>) -> Self {
-        self.0
-            .push((name, Value::Array(rows.into_iter().map(Self::value).collect())));
+    pub fn rows(mut self, name: &'static str, rows: Vec<Self>) -> Self {
+        self.0.push((name, Field::Rows(rows)));
         self
     }
 
     /// The same with an output inside.
     #[must_use]
     pub fn object(mut self, name: &'static str, inner: Self) -> Self {
-        self.0.push((name, inner.value()));
+        self.0.push((name, Field::Object(inner)));
         self
-    }
-
-    /// As one JSON object.
-    #[must_use]
-    pub fn value(self) -> Value {
-        let object: Map<String, Value> = self
-            .0
-            .into_iter()
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect();
-        Value::Object(object)
     }
 
     /// Names in order.
@@ -60,52 +52,65 @@ impl Output {
         self.0.iter().map(|(name, _)| *name)
     }
 
-    /// The JSON text, one line.
-    #[must_use]
-    pub fn json(&self) -> String {
-        self.clone().value().to_string()
-    }
-
     /// A number at the top.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(known, _)| *known == name)?.1.as_f64()
+        self.0.iter().find_map(|(known, field)| match field {
+            Field::Number(value) if *known == name => Some(*value),
+            _ => None,
+        })
     }
 
     /// Whether every number is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        fn finite(value: &Value) -> bool {
-            match value {
-                Value::Null => false,
-                Value::Array(list) => list.iter().all(finite),
-                Value::Object(map) => map.values().all(finite),
-                Value::Bool(_) | Value::Number(_) | Value::String(_) => true,
-            }
-        }
-        self.0.iter().all(|(_, value)| finite(value))
+        self.0.iter().all(|(_, field)| match field {
+            Field::Number(value) => value.is_finite(),
+            Field::Flag(_) => true,
+            Field::Rows(rows) => rows.iter().all(Self::is_finite),
+            Field::Object(inner) => inner.is_finite(),
+        })
     }
 
-    /// For people: a line a value, a table for a list. Units are those of `returned`.
+    /// One JSON object on one line. A number that is not finite would be null; models return none.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let members: Vec<String> = self
+            .0
+            .iter()
+            .map(|(name, field)| {
+                let value = match field {
+                    Field::Number(value) => serde_json::Value::from(*value).to_string(),
+                    Field::Flag(value) => value.to_string(),
+                    Field::Rows(rows) => format!("[{}]", rows.iter().map(Self::json).collect::<Vec<_>>().join(",")),
+                    Field::Object(inner) => inner.json(),
+                };
+                format!("\"{name}\":{value}")
+            })
+            .collect();
+        format!("{{{}}}", members.join(","))
+    }
+
+    /// For people: a table for a series, then a line a value. Units are those of `returned`.
     #[must_use]
     pub fn table(&self, returned: &[Returned]) -> String {
         let mut lines: Vec<(String, String)> = Vec::new();
-        let mut tables = String::new();
-        for (name, value) in &self.0 {
+        let mut out = String::new();
+        for (name, field) in &self.0 {
             let unit = returned.iter().find(|r| r.name == *name).map_or("", |r| r.unit);
-            match value {
-                Value::Array(rows) => tables += &rows_table(rows),
-                Value::Object(map) => {
-                    lines.extend(map.iter().map(|(key, value)| (format!("{name}.{key}"), text(value))));
+            match field {
+                Field::Rows(rows) => out += &rows_table(rows),
+                Field::Object(inner) => {
+                    let of = |(key, value): &(&str, Field)| (format!("{name}.{key}"), text(value));
+                    lines.extend(inner.0.iter().map(of));
                 }
                 _ => lines.push((
                     (*name).to_owned(),
-                    format!("{} {unit}", text(value)).trim_end().to_owned(),
+                    format!("{} {unit}", text(field)).trim_end().to_owned(),
                 )),
             }
         }
         let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-        let mut out = tables;
         for (name, value) in lines {
             // Writing to a string cannot fail.
             let _ = writeln!(out, "{name:<width$}  {value}");
@@ -115,10 +120,10 @@ impl Output {
 }
 
 /// Six figures, for reading.
-fn text(value: &Value) -> String {
-    match value.as_f64() {
-        Some(0.0) => "0".to_owned(),
-        Some(x) if (1e-3..1e6).contains(&x.abs()) => {
+fn text(field: &Field) -> String {
+    match field {
+        Field::Number(0.0) => "0".to_owned(),
+        Field::Number(x) if (1e-3..1e6).contains(&x.abs()) => {
             let places = (5 - x.abs().log10().floor() as i32).max(0) as usize;
             let text = format!("{x:.places$}");
             if text.contains('.') {
@@ -127,35 +132,39 @@ fn text(value: &Value) -> String {
                 text
             }
         }
-        Some(x) => format!("{x:.5e}"),
-        None => value.to_string(),
+        Field::Number(x) => format!("{x:.5e}"),
+        Field::Flag(value) => value.to_string(),
+        Field::Rows(rows) => format!("{} rows", rows.len()),
+        Field::Object(inner) => inner.json(),
     }
 }
 
-fn rows_table(rows: &[Value]) -> String {
-    let objects: Vec<&Map<String, Value>> = rows.iter().filter_map(Value::as_object).collect();
-    let Some(first) = objects.first() else {
+fn rows_table(rows: &[Output]) -> String {
+    let Some(first) = rows.first() else {
         return String::new();
     };
-    let mut columns: Vec<Vec<String>> = first.keys().map(|name| vec![name.clone()]).collect();
-    for object in &objects {
-        for column in &mut columns {
-            let cell = object.get(&column[0]).map_or(String::new(), text);
-            column.push(cell);
-        }
-    }
+    let columns: Vec<Vec<String>> = first
+        .names()
+        .enumerate()
+        .map(|(i, name)| {
+            let cells = rows
+                .iter()
+                .map(|row| row.0.get(i).map_or(String::new(), |(_, field)| text(field)));
+            core::iter::once(name.to_owned()).chain(cells).collect()
+        })
+        .collect();
     let widths: Vec<usize> = columns
         .iter()
         .map(|column| column.iter().map(String::len).max().unwrap_or(0))
         .collect();
     let mut out = String::new();
-    for row in 0..=objects.len() {
-        let cells: Vec<String> = columns
+    for row in 0..=rows.len() {
+        let cells = columns
             .iter()
             .zip(&widths)
-            .map(|(column, width)| format!("{:>width$}", column[row]))
-            .collect();
-        out += cells.join("  ").trim_end();
+            .map(|(column, width)| format!("{:>width$}", column[row]));
+        let line: Vec<String> = cells.collect();
+        out += line.join("  ").trim_end();
         out += "\n";
     }
     out

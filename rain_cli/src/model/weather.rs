@@ -160,5 +160,5 @@ fn weather(values: &Values, read_file: ReadFile<'_>) -> Result<Output, ModelErro
         ("drained_mm", ledger.drained_mm),
         ("residual_relative", ledger.residual_relative()),
     ]);
-    Ok(Output::default().list("series", rows).object("budget", budget))
+    Ok(Output::default().rows("series", rows).object("budget", budget))
 }
