@@ -4,6 +4,7 @@ mod drop_radiance;
 mod energy;
 mod fresnel;
 mod refraction;
+mod spheroid;
 
 pub use drop_radiance::{CHEAP_REFLECTED, CHEAP_REFRACTED, DropLight, DropRays, drop_light, drop_rays_f32};
 pub use energy::{EnergySplit, energy_split, retro_reflection, sphere_order_share};
@@ -14,3 +15,4 @@ pub use fresnel::{
 pub use refraction::{
     Bow, deviation_rad, deviation_sin_cos_f32, disc_share_within, field_of_view_rad, impact_of_deviation, rainbow,
 };
+pub use spheroid::{DropBody, DropRay};
