@@ -12,8 +12,8 @@ use crate::drop::{cosine_terms, printed_radius, volume};
 pub enum Shape {
     /// r = Σ aₙ cos nθ, θ from downward.
     Series(Vec<f64>),
-    /// Horizontal and vertical semi-axis.
-    Spheroid(f64, f64),
+    /// Two half spheroids on one circle of radius 1 around the origin: height of the upper, of the lower one.
+    Halves(f64, f64),
 }
 
 impl Shape {
@@ -36,10 +36,14 @@ impl Shape {
             Self::Series(terms) => {
                 let length = dot(p, p).sqrt();
                 let theta = (-p[1] / length.max(1e-300)).clamp(-1.0, 1.0).acos();
-                let radius: f64 = terms.iter().enumerate().map(|(n, a)| a * (n as f64 * theta).cos()).sum();
+                let radius: f64 = terms
+                    .iter()
+                    .enumerate()
+                    .map(|(n, a)| a * (n as f64 * theta).cos())
+                    .sum();
                 length - radius
             }
-            Self::Spheroid(a, b) => p[0].hypot(p[2]).hypot(p[1] * a / b) - a,
+            Self::Halves(upper, lower) => p[0].hypot(p[2]).hypot(p[1] / if p[1] > 0.0 { upper } else { lower }) - 1.0,
         }
     }
 
@@ -57,11 +61,22 @@ impl Shape {
         }))
     }
 
+    /// Radius and height of the widest circle, by looking at many points.
+    pub fn widest(&self) -> [f64; 2] {
+        let at = |i: u32| {
+            let theta = core::f64::consts::PI * f64::from(i) / 20_000.0;
+            let towards = [theta.sin(), -theta.cos(), 0.0];
+            let r = crate::numerics::bisect(0.0, 3.0, |r| self.outside(towards.map(|c| r * c)));
+            [r * towards[0], r * towards[1]]
+        };
+        (0..=20_000)
+            .map(at)
+            .fold([0.0; 2], |best, p| if p[0] > best[0] { p } else { best })
+    }
+
     /// Lowest and highest point.
     pub fn ends(&self) -> [f64; 2] {
-        [-1.0, 1.0].map(|y| {
-            crate::numerics::bisect(0.0, 3.0, |length| self.outside([0.0, y * length, 0.0])) * y
-        })
+        [-1.0, 1.0].map(|y| crate::numerics::bisect(0.0, 3.0, |length| self.outside([0.0, y * length, 0.0])) * y)
     }
 
     /// The first point on the way from `from` along `direction` where the sign changes: steps of 1/50 from 1/1000 on,
@@ -104,7 +119,11 @@ fn over(a: Complex, b: Complex) -> Complex {
 /// Amplitudes (s, p) reflected, by the complex cosine beyond the surface; |·|² is the reflectance.
 fn reflected_amplitudes(cosine: f64, before: f64, beyond: f64) -> [Complex; 2] {
     let square = 1.0 - (before / beyond).powi(2) * (1.0 - cosine * cosine);
-    let inner = if square >= 0.0 { [square.sqrt(), 0.0] } else { [0.0, (-square).sqrt()] };
+    let inner = if square >= 0.0 {
+        [square.sqrt(), 0.0]
+    } else {
+        [0.0, (-square).sqrt()]
+    };
     let ratio = |p: f64, q: f64| {
         let (a, b) = (p * cosine, inner.map(|c| q * c));
         over([a - b[0], -b[1]], [a + b[0], b[1]])
@@ -113,12 +132,20 @@ fn reflected_amplitudes(cosine: f64, before: f64, beyond: f64) -> [Complex; 2] {
 }
 
 fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 /// An axis that is not along `a`.
 fn skew(a: Vector) -> Vector {
-    if a[0].abs() < 0.5 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] }
+    if a[0].abs() < 0.5 {
+        [1.0, 0.0, 0.0]
+    } else {
+        [0.0, 1.0, 0.0]
+    }
 }
 
 /// A complex electric field, as a vector of real and one of imaginary parts.
@@ -164,7 +191,10 @@ pub struct Seen {
 impl Seen {
     /// Radiance for an environment.
     pub fn radiance(&self, environment: impl Fn(Vector) -> f64) -> f64 {
-        self.paths.iter().map(|path| path.weight * environment(path.direction)).sum()
+        self.paths
+            .iter()
+            .map(|path| path.weight * environment(path.direction))
+            .sum()
     }
 }
 
@@ -176,12 +206,10 @@ pub fn see(shape: &Shape, through: Vector, view: Vector, index: f64, orders: usi
     let other = cross(view, side);
     // Unpolarised: half of each of two fields across one another.
     let mut fields = [[side, [0.0; 3]], [other, [0.0; 3]]];
-    let power = |fields: [Field; 2]| -> f64 {
-        0.5 * fields.iter().flatten().map(|part| dot(*part, *part)).sum::<f64>()
-    };
-    let through_of = |reflected: [Complex; 2]| {
-        reflected.map(|r| [(1.0 - r[0] * r[0] - r[1] * r[1]).max(0.0).sqrt(), 0.0])
-    };
+    let power =
+        |fields: [Field; 2]| -> f64 { 0.5 * fields.iter().flatten().map(|part| dot(*part, *part)).sum::<f64>() };
+    let through_of =
+        |reflected: [Complex; 2]| reflected.map(|r| [(1.0 - r[0] * r[0] - r[1] * r[1]).max(0.0).sqrt(), 0.0]);
 
     let cosine = (-dot(view, normal)).clamp(0.0, 1.0);
     let reflected = reflected_amplitudes(cosine, 1.0, index);
@@ -215,9 +243,44 @@ pub fn see(shape: &Shape, through: Vector, view: Vector, index: f64, orders: usi
     Some(Seen { point, normal, paths })
 }
 
+/// What is seen on a grid of `side`² parallel lines of sight that covers the drop from −1.2 to 1.2 across and up: of each
+/// that meets it, a point and what is seen.
+pub fn picture(shape: &Shape, view: Vector, index: f64, orders: usize, side: u32) -> Vec<(Vector, Seen)> {
+    let right = unit(cross(view, [0.0, 1.0, 0.0]));
+    let up = cross(right, view);
+    let middle = 0.5 * (shape.ends()[0] + shape.ends()[1]);
+    let place = |i: u32| 2.4 * ((f64::from(i) + 0.5) / f64::from(side) - 0.5);
+    (0..side * side)
+        .filter_map(|i| {
+            let through = plus(plus([0.0, middle, 0.0], right, place(i % side)), up, place(i / side));
+            Some((through, see(shape, through, view, index, orders)?))
+        })
+        .collect()
+}
+
+/// Mean of an environment over the cap of half-angle `half` around `axis`, by rings of equal area.
+pub fn cap_mean(environment: impl Fn(Vector) -> f64, axis: Vector, half: f64) -> f64 {
+    let side = unit(cross(axis, skew(axis)));
+    let other = cross(axis, side);
+    let mut sum = 0.0;
+    for ring in 0..100 {
+        let cos = 1.0 - (1.0 - half.cos()) * (f64::from(ring) + 0.5) / 100.0;
+        let sin = (1.0 - cos * cos).sqrt();
+        for spoke in 0..200 {
+            let (y, x) = (core::f64::consts::TAU * (f64::from(spoke) + 0.5) / 200.0).sin_cos();
+            sum += environment(plus(plus(axis.map(|c| c * cos), side, sin * x), other, sin * y));
+        }
+    }
+    sum / 20_000.0
+}
+
 /// Luminance of the overcast sky over that of its zenith, (1 + 2 sin γ)/3 (CIE), over a ground of `ground`.
 pub fn overcast(direction: Vector, ground: f64) -> f64 {
-    if direction[1] > 0.0 { (1.0 + 2.0 * direction[1]) / 3.0 } else { ground }
+    if direction[1] > 0.0 {
+        (1.0 + 2.0 * direction[1]) / 3.0
+    } else {
+        ground
+    }
 }
 
 /// A lamp in the direction `towards` (unit) with a soft rim of `radius` rad, of radiance 1, in the dark.

@@ -47,12 +47,27 @@ impl DropBody {
             }
         }
         let widest = outline.radius(below);
-        let (radius, level) = (widest * crate::ops::sqrt((1.0 - below) * (1.0 + below)), -widest * below);
+        let (radius, level) = (
+            widest * crate::ops::sqrt((1.0 - below) * (1.0 + below)),
+            -widest * below,
+        );
         let (top, bottom) = (outline.radius(-1.0), outline.radius(1.0));
         (
             Self::new(((top - level) / radius) as f32, ((bottom + level) / radius) as f32),
             [radius as f32, level as f32],
         )
+    }
+
+    /// Height of the upper half, in radii of the widest circle.
+    #[must_use]
+    pub fn upper(self) -> f32 {
+        self.upper
+    }
+
+    /// Depth of the lower half, in radii of the widest circle.
+    #[must_use]
+    pub fn lower(self) -> f32 {
+        self.lower
     }
 
     /// What stretches the half above or below to a sphere.
