@@ -18,6 +18,9 @@ fn frame(point: [f64; 2], from: [f64; 2], to: [f64; 2], width: f64) -> (f64, f64
     }
 }
 
+/// Sum of an impulse's force over that of its weight, below which the force is as good as whole.
+const SMALL_BALANCE: f64 = 1e-3;
+
 /// Segments shorter than this, over the width, are done by the series in double precision.
 const SHORT: f64 = 0.05;
 
@@ -230,8 +233,8 @@ impl SweptSource {
 impl WaveField {
     /// Adds the source of one frame. Two halves of the way with half the push each do the same as the whole.
     ///
-    /// Dry cells, fixed borders and what lies outside are left out; an impulse still moves no water in sum. Costs two looks at
-    /// each cell within 5 s of the way, some ten ns each.
+    /// Dry cells, fixed borders and what lies outside are left out; an impulse still moves no water in sum. Costs some ten
+    /// ns for each cell within 5 s of the way, twice that by shores and borders.
     ///
     /// # Errors
     /// [`ConfigError::OutOfRange`] for a field of `source` outside its domain or not finite; then nothing has changed.
@@ -258,25 +261,36 @@ impl WaveField {
                 (0.0, -(1.0 + self.half_damping()) * self.step_s() * force)
             }
         };
-        let (mut weight_sum, mut force_sum) = (0.0, 0.0);
+        let (mut weight_sum, mut force_sum, mut count) = (0.0, 0.0, 0.0);
         for (k, l) in cells() {
             if let Some(index) = self.reached(spans, k, l) {
                 let (weight, laplacian) = shape(k, l);
+                let force = self.relative_depth(index) * laplacian;
                 weight_sum += f64::from(weight);
-                force_sum += f64::from(self.relative_depth(index) * laplacian);
+                force_sum += f64::from(force);
+                count += 1.0;
+                let raised = height as f32 * weight;
+                self.now[index] += raised;
+                self.before[index] += raised + back as f32 * force;
             }
         }
         if weight_sum <= 0.0 {
             return Ok(());
         }
-        let balance = (force_sum / weight_sum) as f32;
+        // What the force moves in sum is taken back: where no border or shore cuts it that is the little beyond its reach,
+        // the same for all cells; else it is much, and follows the weight so that no step is left around the source.
+        let balance = force_sum / weight_sum;
+        let (even, shaped) = if balance.abs() < SMALL_BALANCE {
+            ((back * force_sum / count) as f32, None)
+        } else {
+            (0.0, Some((back * balance) as f32))
+        };
         for (k, l) in cells() {
             if let Some(index) = self.reached(spans, k, l) {
-                let (weight, laplacian) = shape(k, l);
-                let zero_sum = self.relative_depth(index) * laplacian - balance * weight;
-                let raised = height as f32 * weight;
-                self.now[index] += raised;
-                self.before[index] += raised + back as f32 * zero_sum;
+                self.before[index] -= match shaped {
+                    None => even,
+                    Some(share) => share * segment.weight([centre(spans[0].start, k), centre(spans[1].start, l)]),
+                };
             }
         }
         self.sum_now += height * weight_sum;

@@ -420,6 +420,38 @@ fn two_half_ways_are_one() {
 }
 
 #[test]
+fn an_impulse_moves_no_water_in_sum_by_walls_and_shores_either() {
+    for (from_m, to_m) in [
+        ([0.10, 0.09], [0.14, 0.10]),
+        ([0.002, 0.09], [0.03, 0.001]),
+        ([0.10, 0.09], [0.10, 0.09]),
+        ([0.125, 0.09], [0.20, 0.10]),
+    ] {
+        let mut field = pond(Border::Wall);
+        let depths: Vec<f32> = (0..64 * 48).map(|k| if k % 64 < 32 { 0.004_99 } else { 0.0 }).collect();
+        if from_m[0] > 0.12 {
+            field.set_depths(&depths).expect("shallow enough");
+        }
+        field
+            .add_swept(&SweptSource {
+                from_m,
+                to_m,
+                width_m: 0.012,
+                push: Push::Impulse(4e-4),
+            })
+            .expect("finite");
+        // Less than the steps after which the mean is set right.
+        field.step(40);
+        let moved: f64 = field.heights().iter().map(|u| f64::from(u.abs())).sum();
+        assert!(
+            moved > 1e-4 && total(&field).abs() < 1e-3 * moved,
+            "{from_m:?}: {} of {moved}",
+            total(&field)
+        );
+    }
+}
+
+#[test]
 fn a_fast_wheel_leaves_an_unbroken_trail() {
     // 12.5 m/s, 60 frames a second, a tyre 0.2 m wide: swept, the trail's ridge is even; points leave beads.
     let mut swept = started(&settings(200, 40, 0.5), |_, _| 0.0);
