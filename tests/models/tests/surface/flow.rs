@@ -6,6 +6,7 @@ use rain_core::surface::{
     film_step_f32, recession_share,
 };
 use rain_reference::surface as truth;
+use rain_reference::surface_inertial::Runoff;
 
 use super::{ANY, config, log_spaced};
 use crate::check::Worst;
@@ -131,6 +132,39 @@ fn sheet_flow_is_near_the_equations_with_pressure_and_inertia() {
         let t = 0.5 * flow.equilibrium_time_s();
         assert!((full(t) / flow.rising_depth_m(x, t) - 1.0).abs() < 0.01);
     }
+}
+
+#[test]
+fn sheet_flow_runs_along_the_fall_line_of_a_plane_askew() {
+    for (n, slopes, length, rain) in [(0.05, [0.006, 0.008], 4.0, 100.0), (0.015, [0.012, 0.016], 5.0, 50.0), (0.05, [0.003, 0.02], 4.0, 100.0)] {
+        let slope = f64::hypot(slopes[0], slopes[1]);
+        for cells in [20_usize, 40, 80] {
+        let width = length / cells as f64;
+        let mut grid = Runoff::dry([cells; 2], width, slopes, n);
+        let flow = manning(n, slope, 3.0 * length, rain);
+        let check = |grid: &Runoff, steady: bool, t: f64| {
+            let mut worst = [Worst::default(), Worst::default()]; let mut mean=[0.0;2];
+            for y in 0..cells { for x in 0..cells {
+                for corner in [0, 1] {
+                    let off = if corner == 1 { 1.0 } else { 0.5 };
+                    let path = [x, y].map(|i| i as f64 + off);
+                    let along = [0, 1].map(|i| path[i] * width * slope / slopes[i]);
+                    if (along[0] - along[1]).abs() < 0.1 * length || along[0].min(along[1]) < 0.1 * length { continue; }
+                    let l = along[0].min(along[1]);
+                    let expected = if steady { flow.steady_depth_m(l) } else { flow.rising_depth_m(l, t) };
+                    worst[corner].relative(grid.depth[grid.cell(x, y)], expected, 0.0, || format!("{x} {y}"));
+                    mean[corner] += grid.depth[grid.cell(x, y)]/expected - 1.0;
+                }
+            }}
+            println!("{n} {slopes:?} cells {cells} steady {steady} {:?} {:?}", worst.map(|w| (w.error, w.place, w.count)), mean);
+        };
+        let c = flow.steady_depth_m(length * slope / slopes[1].max(slopes[0])) / rain * 3.6e6;
+        let steps = grid.run(rain / 3.6e6, 0.5 * c);
+        check(&grid, false, 0.5 * c);
+        let steps2 = grid.run(rain / 3.6e6, 3.5 * c);
+        check(&grid, true, 0.0);
+        println!("steps {steps} {steps2} mass {:e}", (grid.stored() + grid.left) / grid.fallen - 1.0);
+    }}
 }
 
 #[test]
