@@ -1,7 +1,13 @@
 //! Rays through a falling drop: two half spheroids that share their widest circle, a dome over a flatter base.
 //!
 //! With heights stretched to those of a sphere the far surface is found by one division (two where the ray changes
-//! halves); normals, Snell's law and Fresnel's equations stay in true space.
+//! halves); normals, Snell's law and Fresnel's equations stay in true space. Nothing is allocated.
+//!
+//! # Accuracy
+//! Against rays traced through the outline of Beard & Chuang: the table of [`super::drop_light`]'s module, relative L1 over
+//! the disc 0.05 at 4 mm where a sphere is off by 0.3. Worst where much is reflected totally on the flat base: looking
+//! half a radian down through 4 mm, 0.3 with three rays, 0.75 with two. The plane of incidence is taken to be the same at
+//! both surfaces. Real drops oscillate.
 
 use glam::Vec3;
 
@@ -33,7 +39,9 @@ impl DropBody {
     }
 
     /// Those of the outline of a drop, and its widest circle: (body, radius and height of the circle over the outline's
-    /// origin, in D/2).
+    /// origin, in D/2). About 10 µs: make it once per size.
+    ///
+    /// Error: heights 2e-4 against a search of 20 000 angles, which is its own.
     #[must_use]
     pub fn of_outline(outline: &DropOutline) -> (Self, [f32; 2]) {
         // The widest place: where the normal is level, by halving between the vertical ones.
@@ -80,6 +88,8 @@ impl DropBody {
     ///
     /// `through`: any point of the line, from the middle of the widest circle, in its radii, its parts clamped to ± 100;
     /// `view`: unit vector from the eye to the drop, else `None`.
+    ///
+    /// Error: 1e-6 against a search along the line, more than 0.1 (cosine of incidence) from the rim.
     #[must_use]
     #[inline]
     pub fn enter(self, through: Vec3, view: Vec3) -> Option<Vec3> {
@@ -105,7 +115,10 @@ impl DropBody {
     ///
     /// `view`: unit vector from the eye to the point; `normal`: outward unit normal there, which also says where on the
     /// body the point lies; one turned away from the eye counts as one across the view. `index`: n, clamped to [1, 10],
-    /// NaN counts as 1. Vectors must be unit and finite, else `None`. The weights of all orders add up to 1.
+    /// NaN counts as 1. Vectors must be unit and finite, else `None`. The weights of all orders add up to 1. Two rays take
+    /// the place of [`super::drop_rays_f32`]; a third brings most of what inner reflections add.
+    ///
+    /// Error: against rays traced through the same body, of three rays, directions 1e-5 and weights 6e-3.
     #[must_use]
     #[inline]
     pub fn rays<const N: usize>(self, view: Vec3, normal: Vec3, index: f32) -> Option<[DropRay; N]> {

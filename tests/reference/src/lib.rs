@@ -16,6 +16,7 @@ pub mod numerics;
 pub mod spectrum;
 pub mod splash;
 pub mod surface;
+pub mod surface_inertial;
 pub mod waves;
 pub mod weather;
 pub mod wheels;

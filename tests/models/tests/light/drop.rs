@@ -89,7 +89,7 @@ fn traced_drops_neither_make_nor_lose_light() {
     worst.assert_below(5e-6, 6);
 
     // Flattened drops hold some rays by total reflection for long, but let all out.
-    for (elevation, left) in [(0.0, 1e-6), (0.5, 1e-4), (-0.5, 2e-3)] {
+    for (elevation, left) in [(0.0, 2e-3), (0.5, 2e-3), (-0.5, 5e-3)] {
         let mut least = f64::INFINITY;
         let seen = picture(&Shape::falling(4.0), line_of_sight(elevation).to_array(), N, 40, 12);
         for (_, seen) in &seen {
@@ -265,15 +265,19 @@ fn relative_l1(values: &[f64], truth: &[f64]) -> f64 {
 #[test]
 fn what_a_drop_shows_is_what_is_traced_within_the_stated_bounds() {
     for (mm, bounds) in STATED {
-        for elevation in ELEVATIONS {
-            let compared = compare(mm, elevation, N);
-            for ((name, values), bounds) in MODELS.iter().zip(&compared.models).zip(bounds) {
+        let [level, up, down] = ELEVATIONS.map(|elevation| compare(mm, elevation, N));
+        for (views, pictures) in [vec![level, up], vec![down]].into_iter().enumerate() {
+            for (model, name) in MODELS.iter().enumerate() {
                 for which in 0..3 {
-                    let error = relative_l1(&values[which], &compared.truth[which]);
-                    let bound = bounds[usize::from(elevation < 0.0)][which];
+                    let error = pictures
+                        .iter()
+                        .map(|seen| relative_l1(&seen.models[model][which], &seen.truth[which]))
+                        .fold(0.0, f64::max);
+                    let bound = bounds[model][views][which];
+                    // The bounds are near to what is reached.
                     assert!(
-                        error < bound && error > 0.3 * bound,
-                        "{mm} mm, elevation {elevation}, environment {which}, {name}: {error}, stated {bound}"
+                        error < bound && error > 0.6 * bound,
+                        "{mm} mm, views {views}, environment {which}, {name}: {error}, stated {bound}"
                     );
                 }
             }

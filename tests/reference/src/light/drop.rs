@@ -198,7 +198,8 @@ impl Seen {
     }
 }
 
-/// The line of sight along `view` (unit) through `through`, up to `orders` inner reflections; `None` where it misses.
+/// The line of sight along `view` (unit) through `through`, up to `orders` inner reflections or until 1e-7 of the light is
+/// left; `None` where it misses.
 pub fn see(shape: &Shape, through: Vector, view: Vector, index: f64, orders: usize) -> Option<Seen> {
     let point = shape.hit(plus(through, view, -4.0), view)?;
     let normal = shape.normal(point);
@@ -237,6 +238,9 @@ pub fn see(shape: &Shape, through: Vector, view: Vector, index: f64, orders: usi
             });
         }
         let back = mirrored(direction, inward);
+        if power(fields) < 1e-7 {
+            break;
+        }
         fields = fields.map(|f| turned(f, direction, back, inward, reflected));
         (direction, place) = (back, end);
     }
