@@ -74,7 +74,8 @@ fn identifier(text: &str) -> &str {
     &text[..end.unwrap_or(text.len())]
 }
 
-/// Names of all functions in a Rust or WGSL source, alone and as `Type::function` where they stand in an `impl`.
+/// Names of all functions and constants in a Rust or WGSL source, alone and as `Type::function` where they stand in an
+/// `impl`.
 fn functions(source: &str) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     let mut of: Option<&str> = None;
@@ -94,7 +95,9 @@ fn functions(source: &str) -> BTreeSet<String> {
         if words.starts_with("//") {
             continue;
         }
-        if let Some((before, rest)) = words.split_once("fn ")
+        if let Some(rest) = words.strip_prefix("pub const ").filter(|rest| !rest.starts_with("fn ")) {
+            names.insert(identifier(rest).to_owned());
+        } else if let Some((before, rest)) = words.split_once("fn ")
             && before
                 .split_whitespace()
                 .all(|word| word.chars().all(|l| l.is_alphanumeric() || "()_:\"".contains(l)))
@@ -208,9 +211,15 @@ fn every_public_model_stands_in_the_table() {
 
 #[test]
 fn faulty_rows_are_told_from_good_ones() {
-    let known =
-        functions("impl Spectrum {\n    pub fn moment(&self) {}\n}\npub fn speed() {}\nfn rain_hash(x: u32) {}");
-    assert!(known.contains("Spectrum::moment") && known.contains("moment") && known.contains("rain_hash"));
+    let known = functions(
+        "impl Spectrum {\n    pub fn moment(&self) {}\n}\npub fn speed() {}\nfn rain_hash(x: u32) {}\npub const F0: f64 = 0.02;",
+    );
+    assert!(
+        known.contains("F0")
+            && known.contains("Spectrum::moment")
+            && known.contains("moment")
+            && known.contains("rain_hash")
+    );
     assert!(!known.contains("Spectrum::speed"));
     let tests = BTreeSet::from(["holds".to_owned()]);
     let keys = BTreeSet::from(["Beard1976".to_owned()]);
