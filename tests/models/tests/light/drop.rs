@@ -267,6 +267,14 @@ fn what_a_drop_shows_is_what_is_traced_within_the_stated_bounds() {
     for (mm, bounds) in STATED {
         let [level, up, down] = ELEVATIONS.map(|elevation| compare(mm, elevation, N));
         for (views, pictures) in [vec![level, up], vec![down]].into_iter().enumerate() {
+            for seen in &pictures {
+                let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+                let cheap = mean(&seen.models[0][1]) / mean(&seen.truth[1]) - 1.0;
+                assert!(
+                    cheap.abs() < [0.08, 0.57][views],
+                    "{mm} mm, views {views}: mean off by {cheap}"
+                );
+            }
             for (model, name) in MODELS.iter().enumerate() {
                 for (which, bound) in bounds[model][views].into_iter().enumerate() {
                     let error = pictures
