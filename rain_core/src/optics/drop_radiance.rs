@@ -4,7 +4,22 @@
 //!
 //! # Accuracy
 //! A sphere with two rays: 4.7 % of the light comes by inner reflections and is left out. The cheap tier replaces both
-//! directions by one blurred look-up each.
+//! directions by one blurred look-up each, the mean of the surroundings within 40° of straight on and that of all.
+//!
+//! Against rays traced through the outline of Beard & Chuang with all inner reflections, relative L1 of the radiance over
+//! the disc of drops of 1, 2, 4 mm, looking level or half a radian up:
+//!
+//! | | one radiance all around | overcast sky over dark ground | lamp of 0.15 rad |
+//! |---|---|---|---|
+//! | cheap | 0.06 | 0.75 | 1.75 |
+//! | [`drop_light`], disc stretched to the drop | 0.06 | 0.07, 0.07, 0.28 | 0.07, 0.27, 0.8 |
+//! | [`drop_rays_f32`], the outline's normals | 0.06, 0.06, 0.07 | 0.07, 0.06, 0.16 | 0.05, 0.17, 0.6 |
+//! | [`super::DropBody::rays`], 2 rays | 0.06, 0.06, 0.08 | 0.06, 0.05, 0.06 | 0.02, 0.08, 0.1 |
+//! | the same, 3 rays | 0.012, 0.012, 0.02 | 0.02, 0.03, 0.06 | 0.02, 0.08, 0.1 |
+//!
+//! Looking half a radian down at dark ground, a quarter of what small drops show is sky by one inner reflection: two rays
+//! miss 0.26, 0.28, 0.75 under the overcast sky, three 0.04, 0.07, 0.3. For mean radiance (drops smaller than a pixel) the
+//! cheap tier is within 0.08 looking level or up, and up to 0.56 too dark looking down.
 
 use glam::Vec3;
 
@@ -34,7 +49,7 @@ pub struct DropLight {
 /// The two rays at `impact` s (radii from the axis, clamped to [0, 1], NaN counts as 0) for `index` n (clamped to
 /// [1, 10], NaN counts as 1).
 ///
-/// Error: 1e-14 against traced rays.
+/// Error: 1e-14 against rays traced through a sphere. For falling drops see the module's table.
 #[must_use]
 pub fn drop_light(impact: f64, index: f64) -> DropLight {
     let s = if impact > 0.0 { impact.min(1.0) } else { 0.0 };
@@ -64,10 +79,12 @@ pub struct DropRays {
 /// The two rays where a line of sight meets a drop, in single precision.
 ///
 /// `view`: unit vector from the eye to the point; `normal`: outward unit normal there (a sphere's, or that of
-/// [`crate::rainfall::DropOutline`]); the refracted ray leaves as from the sphere with this normal. A normal turned away
+/// [`crate::rainfall::DropOutline`]); the refracted ray leaves as from the sphere with this normal, which is poor above
+/// 2 mm: [`super::DropBody::rays`] takes the true far side. A normal turned away
 /// from the eye counts as one across the view. `index` as in [`drop_light`]. Vectors must be unit and finite; else `None`.
 ///
-/// Error: directions 1e-5 and weights 5e-6 against traced rays through a sphere, up to 0.99 of the radius.
+/// Error: directions 1e-5 and weights 5e-6 against traced rays through a sphere, up to 0.99 of the radius. For falling
+/// drops see the module's table.
 #[must_use]
 pub fn drop_rays_f32(view: Vec3, normal: Vec3, index: f32) -> Option<DropRays> {
     if !(view.is_normalized() && normal.is_normalized()) {

@@ -81,6 +81,13 @@ pub fn fresnel_from_inside(cos_incidence: f64, index: f64) -> f64 {
 #[must_use]
 #[inline]
 pub fn fresnel_f32(cos_incidence: f32, relative_index: f32) -> f32 {
+    let [s, p] = fresnel_polarised_f32(cos_incidence, relative_index);
+    0.5 * (s + p)
+}
+
+/// (s, p) of [`fresnel_f32`].
+#[inline]
+pub(super) fn fresnel_polarised_f32(cos_incidence: f32, relative_index: f32) -> [f32; 2] {
     let c = if cos_incidence.is_nan() {
         1.0
     } else {
@@ -92,16 +99,17 @@ pub fn fresnel_f32(cos_incidence: f32, relative_index: f32) -> f32 {
         relative_index.clamp(0.1, 10.0)
     };
     if n == 1.0 {
-        return 0.0;
+        return [0.0; 2];
     }
     let square = (n - 1.0) * (n + 1.0) + c * c;
     if square <= 0.0 {
-        return 1.0;
+        return [1.0; 2];
     }
     let gamma = square.sqrt();
     let across = (gamma - c) / (gamma + c);
     let ratio = (c * (gamma + c) - 1.0) / (c * (gamma - c) + 1.0);
-    0.5 * across * across * (1.0 + ratio * ratio)
+    let s = across * across;
+    [s, s * ratio * ratio]
 }
 
 /// Reflectance at normal incidence, ((n − 1)/(n + 1))². `relative_index` as in [`fresnel`]. Units: none.

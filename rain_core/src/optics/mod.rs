@@ -1,10 +1,12 @@
 //! Light at a water surface and in a drop: Fresnel, refraction, energy split, radiance.
 
+mod drop_body;
 mod drop_radiance;
 mod energy;
 mod fresnel;
 mod refraction;
 
+pub use drop_body::{DropBody, DropRay};
 pub use drop_radiance::{CHEAP_REFLECTED, CHEAP_REFRACTED, DropLight, DropRays, drop_light, drop_rays_f32};
 pub use energy::{EnergySplit, energy_split, retro_reflection, sphere_order_share};
 pub use fresnel::{

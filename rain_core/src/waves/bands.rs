@@ -12,7 +12,7 @@ use super::border::Border;
 use super::rows::Rules;
 
 /// Steps in one pass.
-pub(super) const FUSED: usize = 4;
+pub(super) const FUSED: usize = 8;
 
 /// Fields smaller than this are stepped by one thread. Units: cells.
 const PARALLEL_CELLS: usize = 512 * 512;
@@ -74,7 +74,7 @@ fn trapezoid(rules: &Rules, a: &mut [f32], b: &mut [f32], first: usize, steps: u
             let Some(j) = (front + 1).checked_sub(s) else { break };
             if low <= j && j < high {
                 let (out, input) = levels(a, b, s);
-                step_row(rules, j, out, input, first);
+                step_row(rules, j, out, input, first, s == steps);
             }
         }
     }
@@ -85,13 +85,22 @@ fn wedge(rules: &Rules, a: &mut [f32], b: &mut [f32], first: usize, edge: usize,
     for s in 1..=steps {
         for j in edge - s..edge + s {
             let (out, input) = levels(a, b, s);
-            step_row(rules, j, out, input, first);
+            step_row(rules, j, out, input, first, s == steps);
         }
     }
 }
 
+/// Row `j` of a step, the last of a pass or not.
+fn row(rules: &Rules, j: usize, out: &mut [f32], input: &[f32], first: usize, last: bool) {
+    if last {
+        rules.row::<true>(j, out, input, first);
+    } else {
+        rules.row::<false>(j, out, input, first);
+    }
+}
+
 /// Row `j` of a step. The outer rows of an open field follow the rows inside them.
-fn step_row(rules: &Rules, j: usize, out: &mut [f32], input: &[f32], first: usize) {
+fn step_row(rules: &Rules, j: usize, out: &mut [f32], input: &[f32], first: usize, last: bool) {
     let nx = rules.nx;
     let at = (j - first) * nx;
     let open = matches!(rules.border, Border::Open { .. });
@@ -99,7 +108,7 @@ fn step_row(rules: &Rules, j: usize, out: &mut [f32], input: &[f32], first: usiz
         let (inner_next, edge_next) = out[at - nx..at + nx].split_at_mut(nx);
         rules.open_row(j, edge_next, &input[at..at + nx], &input[at - nx..at], inner_next);
     } else if !open || j > 0 {
-        rules.row(j, &mut out[at..at + nx], input, first);
+        row(rules, j, &mut out[at..at + nx], input, first, last);
         if open && j == 1 {
             let (edge_next, inner_next) = out[..2 * nx].split_at_mut(nx);
             rules.open_row(0, edge_next, &input[..nx], &input[nx..2 * nx], inner_next);
@@ -113,8 +122,8 @@ fn around(rules: &Rules, before: &mut [f32], now: &mut [f32], steps: usize, thre
     for s in 1..=steps {
         let (out, input) = levels(before, now, s);
         let rows = |first: usize, out: &mut [f32]| {
-            for (k, row) in out.chunks_exact_mut(nx).enumerate() {
-                rules.row(first + k, row, input, 0);
+            for (k, out) in out.chunks_exact_mut(nx).enumerate() {
+                row(rules, first + k, out, input, 0, s == steps);
             }
         };
         if threads == 1 {

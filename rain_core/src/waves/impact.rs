@@ -1,9 +1,10 @@
 //! A drop that falls into the water.
 
 use super::field::WaveField;
-use crate::constants::{GRAVITY, WATER_DENSITY};
+use crate::constants::WATER_DENSITY;
 use crate::error::{ConfigError, in_range};
 use crate::ops;
+use crate::splash::{crater_radius_m, impact_momentum_kg_m_s};
 
 /// Largest |Δu_t| over the wave speed for which linear theory is used.
 const LINEAR_LIMIT: f64 = 0.3;
@@ -19,18 +20,6 @@ pub struct DropImpact {
     pub diameter_mm: f64,
     /// Speed downwards. Units: m/s. Domain: [0, 30].
     pub speed_m_s: f64,
-}
-
-/// Radius of the crater into which all of a kinetic energy goes, (4E/(πρg))^¼. Units: m; `energy_j` in J, negative or NaN
-/// counts as 0, above 1e6 as 1e6.
-///
-/// Error: relative 1e-15; model: Engel 1966 and Pumphrey & Elmore 1990 find a part of the energy only, so it is an upper
-/// bound.
-#[must_use]
-pub fn crater_radius_m(energy_j: f64) -> f64 {
-    let energy = if energy_j > 0.0 { energy_j.min(1e6) } else { 0.0 };
-    let fourth = 4.0 * energy / (core::f64::consts::PI * WATER_DENSITY * GRAVITY);
-    ops::sqrt(ops::sqrt(fourth))
 }
 
 impl DropImpact {
@@ -54,13 +43,7 @@ impl DropImpact {
     /// Momentum m v. Units: kg m/s.
     #[must_use]
     pub fn momentum(&self) -> f64 {
-        WATER_DENSITY * self.volume_m3() * self.speed_m_s
-    }
-
-    /// Kinetic energy ½ m v². Units: J.
-    #[must_use]
-    pub fn energy_j(&self) -> f64 {
-        0.5 * self.momentum() * self.speed_m_s
+        impact_momentum_kg_m_s(self.diameter_mm, self.speed_m_s)
     }
 
     /// Largest change of the surface's velocity, at the middle of the impact: (h/ρ) m v/(π s⁴). Units: m/s; depth and
@@ -75,7 +58,7 @@ impl DropImpact {
     /// moves at no more than 0.3 of the wave speed. Units: m; cell and depth in m.
     #[must_use]
     pub fn width_m(&self, cell_m: f64, depth_m: f64) -> f64 {
-        let crater = 0.5 * crater_radius_m(self.energy_j());
+        let crater = 0.5 * crater_radius_m(self.diameter_mm, self.speed_m_s, 1.0);
         let limit = LINEAR_LIMIT * super::shallow_speed(depth_m);
         let linear = if limit > 0.0 {
             ops::sqrt(ops::sqrt(self.peak_velocity(depth_m, 1.0) / limit))

@@ -40,7 +40,7 @@ pub use dispersion::{
 pub use double::DoubleField;
 pub use erf::erf_f32;
 pub use field::WaveField;
-pub use impact::{DropImpact, crater_radius_m};
+pub use impact::DropImpact;
 pub use ring::{Ring, RingTable};
 pub use settings::WaveSettings;
 pub use slope_variance::{impact_slope_variance, slope_variance};

@@ -8,7 +8,8 @@ use super::bed::Bed;
 use super::border::Border;
 use super::stencil::Stencil;
 
-/// Heights below this are 0: a quiet pond must not run into denormal numbers. Units: m.
+/// Heights below this are 0 after the last step of a pass: a quiet pond must not run into denormal numbers, and in the few
+/// steps of a pass none falls from here to 1e-38. Units: m.
 const TINY: f32 = 1e-20;
 
 #[inline(always)]
@@ -36,8 +37,9 @@ pub(super) struct Rules {
 
 impl Rules {
     /// Writes row `j` of the next level into `out`, which holds the level before; `input` holds the level between, from
-    /// row `first` on, with the neighbours of row `j`.
-    pub fn row(&self, j: usize, out: &mut [f32], input: &[f32], first: usize) {
+    /// row `first` on, with the neighbours of row `j`. `LAST`: tiny heights
+    /// become 0.
+    pub fn row<const LAST: bool>(&self, j: usize, out: &mut [f32], input: &[f32], first: usize) {
         let nx = self.nx;
         let row = |k: usize| &input[(k - first) * nx..][..nx];
         let wraps = self.border == Border::Periodic;
@@ -68,16 +70,16 @@ impl Rules {
                 south: &bed.south[j * nx..][..nx],
             };
             if damped {
-                faces_row(out, here, north, south, faces, sponge());
+                faces_row::<LAST>(out, here, north, south, faces, sponge());
             } else {
-                faces_row(out, here, north, south, faces, even);
+                faces_row::<LAST>(out, here, north, south, faces, even);
             }
         } else {
             match (self.stencil, damped) {
-                (Stencil::FivePoint, false) => five_row(out, here, north, south, wraps, even),
-                (Stencil::FivePoint, true) => five_row(out, here, north, south, wraps, sponge()),
-                (Stencil::NinePoint, false) => nine_row(out, here, north, south, wraps, even),
-                (Stencil::NinePoint, true) => nine_row(out, here, north, south, wraps, sponge()),
+                (Stencil::FivePoint, false) => five_row::<LAST>(out, here, north, south, wraps, even),
+                (Stencil::FivePoint, true) => five_row::<LAST>(out, here, north, south, wraps, sponge()),
+                (Stencil::NinePoint, false) => nine_row::<LAST>(out, here, north, south, wraps, even),
+                (Stencil::NinePoint, true) => nine_row::<LAST>(out, here, north, south, wraps, sponge()),
             }
         }
         match self.border {
@@ -158,8 +160,9 @@ struct Faces<'a> {
 
 /// u⁺ of one cell from u⁻, u and Lu.
 #[inline(always)]
-fn next(before: f32, u: f32, [g, r]: [f32; 2], sum: f32) -> f32 {
-    flushed(u + (g * (u - before) + r * sum))
+fn next<const LAST: bool>(before: f32, u: f32, [g, r]: [f32; 2], sum: f32) -> f32 {
+    let next = u + (g * (u - before) + r * sum);
+    if LAST { flushed(next) } else { next }
 }
 
 #[inline(always)]
@@ -187,48 +190,48 @@ fn around(m: usize, wraps: bool) -> (usize, usize) {
 
 /// Five-point row over constant depth. `g` gives the gain of a column.
 #[inline(always)]
-fn five_row(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], wraps: bool, g: impl Gain) {
+fn five_row<const LAST: bool>(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], wraps: bool, g: impl Gain) {
     let m = out.len();
     let (west, east) = around(m, wraps);
     for (i, w, e) in [(0, west, 1), (m - 1, m - 2, east)] {
-        out[i] = next(out[i], u[i], g.at(i), five(u[i], [u[w], u[e], n[i], s[i]]));
+        out[i] = next::<LAST>(out[i], u[i], g.at(i), five(u[i], [u[w], u[e], n[i], s[i]]));
     }
     let k = m - 2;
     let (out, [w, u, e]) = (&mut out[1..][..k], inner(u, k));
     let (n, s, g) = (&n[1..][..k], &s[1..][..k], g.inner(k));
     for i in 0..k {
-        out[i] = next(out[i], u[i], g.at(i), five(u[i], [w[i], e[i], n[i], s[i]]));
+        out[i] = next::<LAST>(out[i], u[i], g.at(i), five(u[i], [w[i], e[i], n[i], s[i]]));
     }
 }
 
 /// Nine-point row over constant depth.
 #[inline(always)]
-fn nine_row(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], wraps: bool, g: impl Gain) {
+fn nine_row<const LAST: bool>(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], wraps: bool, g: impl Gain) {
     let m = out.len();
     let (west, east) = around(m, wraps);
     for (i, w, e) in [(0, west, 1), (m - 1, m - 2, east)] {
         let sum = nine(u[i], [u[w], u[e], n[i], s[i]], [n[w], n[e], s[w], s[e]]);
-        out[i] = next(out[i], u[i], g.at(i), sum);
+        out[i] = next::<LAST>(out[i], u[i], g.at(i), sum);
     }
     let k = m - 2;
     let (out, [w, u, e], g) = (&mut out[1..][..k], inner(u, k), g.inner(k));
     let ([nw, n, ne], [sw, s, se]) = (inner(n, k), inner(s, k));
     for i in 0..k {
         let sum = nine(u[i], [w[i], e[i], n[i], s[i]], [nw[i], ne[i], sw[i], se[i]]);
-        out[i] = next(out[i], u[i], g.at(i), sum);
+        out[i] = next::<LAST>(out[i], u[i], g.at(i), sum);
     }
 }
 
 /// Row over depths that differ: fluxes through faces, so what leaves one cell enters its neighbour.
 #[inline(always)]
-fn faces_row(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], faces: Faces<'_>, g: impl Gain) {
+fn faces_row<const LAST: bool>(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], faces: Faces<'_>, g: impl Gain) {
     let m = out.len();
     let Faces { east, north, south } = faces;
     // The face around the border is 0 unless the field is periodic.
     for (i, w, e) in [(0, m - 1, 1), (m - 1, m - 2, 0)] {
         let along = east[i] * (u[e] - u[i]) - east[w] * (u[i] - u[w]);
         let across = south[i] * (s[i] - u[i]) - north[i] * (u[i] - n[i]);
-        out[i] = next(out[i], u[i], g.at(i), along + across);
+        out[i] = next::<LAST>(out[i], u[i], g.at(i), along + across);
     }
     let k = m - 2;
     let (out, [w, u, e], g) = (&mut out[1..][..k], inner(u, k), g.inner(k));
@@ -237,6 +240,6 @@ fn faces_row(out: &mut [f32], u: &[f32], n: &[f32], s: &[f32], faces: Faces<'_>,
     for i in 0..k {
         let along = east[i] * (e[i] - u[i]) - west[i] * (u[i] - w[i]);
         let across = south[i] * (s[i] - u[i]) - north[i] * (u[i] - n[i]);
-        out[i] = next(out[i], u[i], g.at(i), along + across);
+        out[i] = next::<LAST>(out[i], u[i], g.at(i), along + across);
     }
 }

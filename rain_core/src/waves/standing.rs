@@ -59,7 +59,7 @@ impl StandingWave {
 
     /// Runs it. Allocates two heights a cell.
     ///
-    /// Error: |amplitude − discrete_amplitude| ≤ 1e-10 up to 10 000 steps, energy drift ≤ 1e-12.
+    /// Error: |amplitude − discrete_amplitude| ≤ 1e-11 and energy drift ≤ 1e-12 after 500 steps.
     ///
     /// # Errors
     /// [`ConfigError::OutOfRange`] for a field outside its domain, and for more than 2e10 cell steps (`time_s`).

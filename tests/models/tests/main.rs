@@ -1,14 +1,15 @@
 //! Every model of `rain_core` against `rain_reference`: error bounds over the whole domain, invariants as property
 //! tests, and the edges of the domain and beyond.
 
+mod allocation;
 mod basins;
 mod canopy;
 mod check;
 mod drop;
 mod fall;
 mod fall_speed;
-mod height_field;
 mod hash;
+mod height_field;
 mod light;
 mod spectrum;
 mod splash;

@@ -124,6 +124,9 @@ pub fn packet(x: f64) -> [f64; 4] {
 pub fn slope_integral(momentum: f64, volume: f64, s: f64, h: f64, k_d: f64) -> f64 {
     let (gamma, c) = (0.5 * k_d, (GRAVITY * h).sqrt());
     simpson(0.0, 7.0 / s, 400, |k| {
+        if k == 0.0 {
+            return 0.0;
+        }
         let w0 = c * k;
         let gauss = (-0.5 * k * k * s * s).exp();
         let (u, v) = (volume * gauss, -h / DENSITY * momentum * k * k * gauss);
@@ -136,11 +139,13 @@ pub fn slope_integral(momentum: f64, volume: f64, s: f64, h: f64, k_d: f64) -> f
         };
         let square = |t: f64| {
             let (cosine, sine) = if d > 0.0 {
-                ((height * t).cos(), (height * t).sin() / height)
+                let fade = (-gamma * t).exp();
+                (fade * (height * t).cos(), fade * (height * t).sin() / height)
             } else {
-                ((height * t).cosh(), (height * t).sinh() / height)
+                let [slow, fast] = [height, -height].map(|rate| ((rate - gamma) * t).exp());
+                (0.5 * (slow + fast), 0.5 * (slow - fast) / height)
             };
-            ((-gamma * t).exp() * (u * cosine + (v + gamma * u) * sine)).powi(2)
+            (u * cosine + (v + gamma * u) * sine).powi(2)
         };
         let panels = 200 + (2.0 * height * end) as usize;
         k * k * k * simpson(0.0, end, panels, square)

@@ -1,5 +1,6 @@
 //! Work against precision: light at a surface, in a drop and through rain.
 
+mod drop;
 mod haze;
 mod surface;
 
@@ -7,5 +8,8 @@ use rain_bench::study::Study;
 
 /// Every study of this folder.
 pub fn studies() -> Vec<Study> {
-    [surface::studies(), haze::studies()].into_iter().flatten().collect()
+    [surface::studies(), drop::studies(), haze::studies()]
+        .into_iter()
+        .flatten()
+        .collect()
 }

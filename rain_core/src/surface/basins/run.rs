@@ -58,7 +58,9 @@ impl BasinForcing {
 ///
 /// Each pool's volume follows dV/dt = runoff · catchment + spill in + (rain − runoff − evaporation − seepage) · A(V) −
 /// drains(level), solved in closed form between the bends of its curve; pools meet only when one is full, and these
-/// moments are found exactly. So the state does not depend on how time is cut into steps.
+/// moments are found exactly. So the state does not depend on how time is cut into steps. (Where rain exceeds runoff and
+/// losses together, a pool that wets more ground gains more: at a bend it may be balanced between rising and sinking, and
+/// there rounding decides.)
 ///
 /// Error: volumes within 1e-9 of the basin's capacity against an event list and against steps of any length; inlets'
 /// flow within 3e-5 above 10 mm; the ledger closes to 1e-12 of the water that came.

@@ -205,3 +205,39 @@ fn the_bake_is_the_same_every_time() {
     assert!(first.basins().len() > 100);
     assert_eq!(first, Basins::bake(&grid, &BakeOptions::default()).unwrap());
 }
+
+#[test]
+fn a_state_that_was_written_down_goes_on_to_the_same_bits() {
+    let field = rain_reference::basins::Field {
+        nx: 48,
+        nz: 48,
+        cell: 0.5,
+        z: heights(48, 48, 2, 3),
+        closed: false,
+    };
+    let baked = Arc::new(bake(&field));
+    let mut run = BasinRun::new(Arc::clone(&baked));
+    let rain = BasinForcing {
+        evaporation_m_s: 1e-6,
+        ..BasinForcing::rain(1e-4)
+    };
+    for _ in 0..50 {
+        run.advance(&rain, 7.3).unwrap();
+    }
+    let text = ron::to_string(run.state()).unwrap();
+    let mut restored = BasinRun::restore(Arc::clone(&baked), ron::from_str(&text).unwrap()).unwrap();
+    assert_eq!(restored.state(), run.state());
+    for run in [&mut run, &mut restored] {
+        for _ in 0..50 {
+            run.advance(&rain, 3.1).unwrap();
+        }
+    }
+    assert_eq!(restored.state(), run.state());
+    assert!(run.ledger().rain_m3 > 0.0);
+    // A state of other basins is refused.
+    let other = Arc::new(bake(&rain_reference::basins::Field {
+        z: heights(48, 48, 5, 3),
+        ..field
+    }));
+    assert!(BasinRun::restore(other, ron::from_str(&text).unwrap()).is_err());
+}

@@ -1,5 +1,6 @@
 //! Fresnel reflection, refraction in a drop, streaks, extinction.
 
+mod drop;
 mod fresnel;
 mod haze;
 mod sharing;

@@ -182,7 +182,7 @@ fn one_impact_roughens_as_the_double_integral_says() {
         (1.0, 0.005, 0.6),
         (2.0, 0.005, 5.0),
         (3.0, 0.02, 2.0),
-        (5.0, 0.002, 30.0),
+        (5.0, 0.002, 3.0),
     ] {
         let impact = DropImpact {
             diameter_mm: diameter,
@@ -195,7 +195,10 @@ fn one_impact_roughens_as_the_double_integral_says() {
             format!("{diameter} mm")
         });
         let wrong = impact_slope_variance(&impact, 1.1 * s, depth, damping);
-        assert!((wrong / exact - 1.0).abs() > 0.04);
+        assert!(
+            (wrong / exact - 1.0).abs() > 0.04,
+            "{diameter} mm, s {s}: {wrong}, exact {exact}, {worst:?}"
+        );
     }
     worst.assert_below(1e-6, 4);
 }

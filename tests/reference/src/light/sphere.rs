@@ -2,26 +2,27 @@
 
 use super::fresnel;
 
-type Vector = [f64; 3];
+/// x, y, z.
+pub type Vector = [f64; 3];
 
-fn dot(a: Vector, b: Vector) -> f64 {
+pub(super) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn plus(a: Vector, b: Vector, s: f64) -> Vector {
+pub(super) fn plus(a: Vector, b: Vector, s: f64) -> Vector {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
-fn unit(a: Vector) -> Vector {
+pub(super) fn unit(a: Vector) -> Vector {
     a.map(|c| c / dot(a, a).sqrt())
 }
 
-fn mirrored(d: Vector, n: Vector) -> Vector {
+pub(super) fn mirrored(d: Vector, n: Vector) -> Vector {
     unit(plus(d, n, -2.0 * dot(d, n)))
 }
 
 /// Snell's law; `n` against the ray, `ratio` = index before / index beyond.
-fn refracted(d: Vector, n: Vector, ratio: f64) -> Vector {
+pub(super) fn refracted(d: Vector, n: Vector, ratio: f64) -> Vector {
     let c = -dot(d, n);
     let k = 1.0 - ratio * ratio * (1.0 - c * c);
     unit(plus(d.map(|x| x * ratio), n, ratio * c - k.max(0.0).sqrt()))
