@@ -54,7 +54,11 @@ impl Runoff {
     fn neighbour(&self, i: usize, axis: usize, step: isize) -> Option<usize> {
         let place = [i % self.cells[0], i / self.cells[0]];
         let moved = place[axis].checked_add_signed(step).filter(|p| *p < self.cells[axis])?;
-        Some(if axis == 0 { self.cell(moved, place[1]) } else { self.cell(place[0], moved) })
+        Some(if axis == 0 {
+            self.cell(moved, place[1])
+        } else {
+            self.cell(place[0], moved)
+        })
     }
 
     /// Water on the plane.
@@ -111,7 +115,11 @@ impl Runoff {
                     .iter()
                     .sum();
                 let asked = outward * dt / self.width;
-                if asked > self.depth[i] { self.depth[i] / asked } else { 1.0 }
+                if asked > self.depth[i] {
+                    self.depth[i] / asked
+                } else {
+                    1.0
+                }
             })
             .collect();
         let mut gained = vec![rain * dt; self.depth.len()];
@@ -120,7 +128,11 @@ impl Runoff {
                 let next = self.neighbour(i, axis, 1);
                 let q = &mut self.discharge[axis][i];
                 // Through an open edge nothing comes back.
-                *q = if *q > 0.0 { *q * share[i] } else { next.map_or(0.0, |j| *q * share[j]) };
+                *q = if *q > 0.0 {
+                    *q * share[i]
+                } else {
+                    next.map_or(0.0, |j| *q * share[j])
+                };
                 let moved = *q * dt / self.width;
                 gained[i] -= moved;
                 match next {
