@@ -37,6 +37,8 @@ struct Drop {
     cheap: [f32; 2],
     lines: Vec<[Vec3; 3]>,
     truth: Vec<[f64; 2]>,
+    /// The same without what comes after more than three inner reflections.
+    three: Vec<[f64; 2]>,
 }
 
 impl Drop {
@@ -57,14 +59,19 @@ impl Drop {
             let of = |angle: f64| cap_mean(|d| truly(d)[which], wide(VIEW), angle) as f32;
             CHEAP_REFRACTED * of(40.0_f64.to_radians()) + CHEAP_REFLECTED * of(core::f64::consts::PI)
         });
-        let (lines, truth) = picture(&shape, wide(VIEW), f64::from(N), 8, SIDE)
+        let (lines, (truth, three)) = picture(&shape, wide(VIEW), f64::from(N), 8, SIDE)
             .into_iter()
             .map(|(through, seen)| {
                 let narrow = |v: [f64; 3]| Vec3::from_array(v.map(|c| c as f32));
                 let at = narrow(through);
                 let normal = narrow(seen.normal).normalize();
                 let line = [(at - Vec3::Y * level) / radius, (at - middle) / half, normal];
-                (line, [0, 1].map(|which| seen.radiance(|d| truly(d)[which])))
+                let early = |inner: Option<usize>| inner.is_none_or(|inner| inner <= 3);
+                let three = [0, 1].map(|which| {
+                    let paths = seen.paths.iter().filter(|path| early(path.inner));
+                    paths.map(|path| path.weight * truly(path.direction)[which]).sum()
+                });
+                (line, ([0, 1].map(|which| seen.radiance(|d| truly(d)[which])), three))
             })
             .unzip();
         Self {
@@ -73,6 +80,7 @@ impl Drop {
             cheap,
             lines,
             truth,
+            three,
         }
     }
 }
@@ -115,19 +123,22 @@ fn schlick(normal: Vec3, f0: f32) -> [f32; 2] {
 
 fn radiance() -> Study {
     let drops: Rc<Vec<Drop>> = Rc::new([1.0, 2.0, 4.0].map(Drop::new).into());
-    let model = |name: &str, shown: fn(&Drop, [Vec3; 3]) -> [f32; 2]| {
+    let error_of = |shown: &dyn Fn(&Drop, usize) -> [f64; 2]| {
         let mut errors = Vec::new();
         for drop in drops.iter() {
             for which in 0..2 {
                 let (mut off, mut all) = (0.0, 0.0);
-                for (line, truth) in drop.lines.iter().zip(&drop.truth) {
-                    off += (f64::from(shown(drop, *line)[which]) - truth[which]).abs();
+                for (line, truth) in drop.truth.iter().enumerate() {
+                    off += (shown(drop, line)[which] - truth[which]).abs();
                     all += truth[which];
                 }
                 errors.push(off / all);
             }
         }
-        let error = errors.iter().sum::<f64>() / errors.len() as f64;
+        errors.iter().sum::<f64>() / errors.len() as f64
+    };
+    let model = |name: &str, shown: fn(&Drop, [Vec3; 3]) -> [f32; 2]| {
+        let error = error_of(&|drop, line| shown(drop, drop.lines[line]).map(f64::from));
         let count = drops.iter().map(|drop| drop.lines.len()).sum::<usize>() as u64;
         let drops = Rc::clone(&drops);
         Variant::new(name, error, count, move || {
@@ -141,7 +152,7 @@ fn radiance() -> Study {
             f64::from(sum[0] + sum[1])
         })
     };
-    let traced = Variant::new("traced, 3 inner", 1e-4, 8, || {
+    let traced = Variant::new("traced, 3 inner", error_of(&|drop, line| drop.three[line]), 8, || {
         let shape = Shape::falling(2.0);
         (0..8)
             .filter_map(|i| {
