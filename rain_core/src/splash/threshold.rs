@@ -74,7 +74,7 @@ pub fn splash_excess_f32(diameter_mm: f32, speed_m_s: f32, film_mm: f32) -> f32 
 /// The smallest drop that splashes when it falls at its terminal speed on a film of `film_mm`. Units: mm.
 ///
 /// `film_mm` held in [0, 1e6], what is not a number counts as 0. Source: as [`splash_threshold_k`] with
-/// [`terminal_velocity`]. Error: 1e-12 mm; the fall speed's fit moves it by up to 0.01 mm.
+/// [`terminal_velocity()`]. Error: 1e-12 mm; the fall speed's fit moves it by up to 0.01 mm.
 #[must_use]
 pub fn splash_threshold_diameter_mm(film_mm: f64) -> f64 {
     // Both the drop's K and film over diameter speak for larger drops: one crossing.
