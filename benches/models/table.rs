@@ -61,7 +61,7 @@ pub fn write(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
     writer.flush().map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// The lines of a table that [`write`] wrote.
+/// The lines of a table that [`write()`] wrote.
 ///
 /// # Errors
 /// When the file cannot be read; the message names it.
