@@ -1,0 +1,7 @@
+//! Tests of the calculator and of the `rain` program, in one binary.
+
+mod bad_input;
+mod document;
+mod program;
+mod values;
+mod weather_model;
