@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use rain_core::error::in_range;
 use rain_core::surface::basins::{BakeOptions, BakeReport, Basins, Grid};
-use rain_core::surface::height_field::{HeightField, HeightFieldError, ImportLimits};
+use rain_core::surface::height_field::{HeightField, HeightFieldError, ImportLimits, MAX_COORDINATE_M};
 use serde_json::{Value, json};
 
 /// Cell of a scene where none is given. Units: m.
@@ -24,7 +25,7 @@ pub struct BakeArgs {
     /// glTF or GLB scene, grey PNG, or CSV table of heights.
     file: PathBuf,
     /// Side of a cell in m (default: 0.25 for a scene, 1 for an image or table).
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     cell_m: Option<f64>,
     /// Height of white in a PNG in m; black is 0.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
@@ -100,6 +101,15 @@ pub fn run(args: &BakeArgs) -> ExitCode {
 }
 
 fn bake(args: &BakeArgs) -> Result<BakeReport, String> {
+    // Where it does not count, it is still checked.
+    in_range(
+        "height_scale_m",
+        args.height_scale_m,
+        -MAX_COORDINATE_M,
+        MAX_COORDINATE_M,
+        "-1e7 to 1e7 m",
+    )
+    .map_err(|error| error.to_string())?;
     let field = read(&args.file, args.cell_m, args.height_scale_m)?;
     let scene = matches!(ending(&args.file).as_deref(), Some("glb" | "gltf"));
     let threshold_m = args.threshold_m.unwrap_or(if scene { SCENE_THRESHOLD_M } else { 0.0 });

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ConfigError {
     /// A number outside its domain, or not finite.
-    #[error("{field} is {value}, allowed: {allowed}")]
+    #[error("{field} is {}, allowed: {allowed}", shown(*.value))]
     OutOfRange {
         /// The field's name with its unit, as in the public API.
         field: &'static str,
@@ -16,7 +16,7 @@ pub enum ConfigError {
         allowed: &'static str,
     },
     /// A sequence that must rise does not.
-    #[error("{field}: entry {index} ({value}) does not come after the one before it ({previous})")]
+    #[error("{field}: entry {index} ({}) does not come after the one before it ({})", shown(*.value), shown(*.previous))]
     NotIncreasing {
         /// The sequence's name with its unit.
         field: &'static str,
@@ -33,6 +33,16 @@ pub enum ConfigError {
         /// The field's name.
         field: &'static str,
     },
+}
+
+/// A number in a message: with an exponent where it would fill lines.
+#[must_use]
+pub fn shown(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
 }
 
 /// `value` if it is finite and in `[min, max]`, else [`ConfigError::OutOfRange`].
@@ -63,4 +73,26 @@ pub(crate) fn clamped(value: f64, min: f64, max: f64) -> f64 {
 #[must_use]
 pub(crate) fn clamped_f32(value: f32, min: f32, max: f32) -> f32 {
     if value.is_nan() { min } else { value.clamp(min, max) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_messages_are_short() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-1.5, "-1.5"),
+            (1e15, "1000000000000000"),
+            (1e300, "1e300"),
+            (-2.5e-300, "-2.5e-300"),
+            (f64::NAN, "NaN"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(shown(value), text);
+        }
+        let error = in_range("cell_m", 1e300, 0.0, 1.0, "0 to 1 m").expect_err("too large");
+        assert_eq!(error.to_string(), "cell_m is 1e300, allowed: 0 to 1 m");
+    }
 }

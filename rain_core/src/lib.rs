@@ -35,6 +35,7 @@ pub mod quadrature;
 pub mod rainfall;
 pub mod splash;
 pub mod surface;
+mod table_lines;
 pub mod waves;
 pub mod weather;
 pub mod wheels;

@@ -147,11 +147,20 @@ impl Values {
     }
 }
 
+/// Enough of a value to recognise it, in quotes where it could not be seen otherwise.
+fn quoted(text: &str) -> String {
+    let start: String = text.chars().take(80).collect();
+    if start.is_empty() || start.contains(|c: char| c.is_whitespace() || c.is_control()) {
+        format!("{start:?}")
+    } else {
+        start
+    }
+}
+
 fn read(key: &Key, text: &str) -> Result<Value, ModelError> {
     let wrong = || ModelError::Value {
         key: key.name,
-        // Enough to recognise it.
-        value: text.chars().take(80).collect(),
+        value: quoted(text),
         allowed: key.allowed(),
     };
     match key.kind {

@@ -1,8 +1,10 @@
 //! The water on the ground under a course of rain.
 
 use glam::DVec3;
+use rain_core::error::shown;
 use rain_core::weather::{
-    Infiltration, MAX_INTERVAL_S, SurfaceClass, SurfaceProperties, WeatherConditions, WeatherSurfaces, read_hyetograph,
+    Infiltration, MAX_INTERVAL_S, SurfaceClass, SurfaceProperties, WeatherConditions, WeatherSurfaces,
+    penman_evaporation_mm_h, read_hyetograph,
 };
 
 use super::key::{Key, returns};
@@ -59,9 +61,15 @@ static WEATHER: Model = Model {
         Key::number("manning_n", [1e-3, 10.0], "s/m^(1/3)", "Manning roughness").or_words("the surface's"),
         Key::number("slope", [0.0, 10.0], "", "fall per length").or_words("the surface's"),
         Key::number("flow_length_m", [0.01, 1e4], "m", "length of the way off").or_words("the surface's"),
-        Key::number("infiltration_initial_mm_h", [0.0, 1e4], "mm/h", "Horton's f₀").or_words("the surface's"),
+        Key::number(
+            "infiltration_initial_mm_h",
+            [0.0, 1e4],
+            "mm/h",
+            "Horton's f₀, at least f_c",
+        )
+        .or_words("the surface's"),
         Key::number("infiltration_final_mm_h", [0.0, 1e4], "mm/h", "Horton's f_c").or_words("the surface's"),
-        Key::number("infiltration_decay_per_h", [0.0, 1e4], "1/h", "Horton's k").or_words("the surface's"),
+        Key::number("infiltration_decay_per_h", [1e-6, 1e3], "1/h", "Horton's k").or_words("the surface's"),
     ],
     returns: &[
         returns(
@@ -111,13 +119,26 @@ fn weather(values: &Values, read_file: ReadFile<'_>) -> Result<Output, ModelErro
     if steps > MAX_ROWS || duration > MAX_INTERVAL_S {
         return Err(ModelError::TooMuch {
             what: "duration_s/step_s",
-            value: format!("{steps}"),
+            value: shown(steps),
             allowed: format!("up to {MAX_ROWS}"),
         });
     }
     let class = SurfaceClass::ALL[SURFACES.iter().position(|s| *s == values.word("surface")).unwrap_or(0)];
     let mut ground = WeatherSurfaces::default();
-    ground.set_properties(class, properties(values, class))?;
+    let properties = properties(values, class);
+    let Infiltration {
+        initial_mm_h,
+        final_mm_h,
+        ..
+    } = properties.infiltration;
+    if initial_mm_h < final_mm_h {
+        return Err(ModelError::Value {
+            key: "infiltration_initial_mm_h",
+            value: shown(initial_mm_h),
+            allowed: format!("infiltration_final_mm_h, here {}, to 10000 mm/h", shown(final_mm_h)),
+        });
+    }
+    ground.set_properties(class, properties)?;
 
     let path = values.file("timeline");
     let wrong = |problem: String| ModelError::File {
@@ -131,16 +152,17 @@ fn weather(values: &Values, read_file: ReadFile<'_>) -> Result<Output, ModelErro
     let (mut now, mut count) = (0.0, 0.0);
     loop {
         let ledger = ground.column(class).ledger();
+        let conditions = timeline.at(now)?;
         rows.push(Output::new([
             ("time_s", now),
-            ("intensity_mm_h", timeline.at(now)?.intensity_mm_h),
+            ("intensity_mm_h", conditions.intensity_mm_h),
             ("wetness", ground.wetness(class)),
             ("water_level_mm", ground.water_level_mm(class)),
             ("pores_mm", ledger.pores_mm),
             ("drained_mm", ledger.drained_mm),
             ("infiltrated_mm", ledger.infiltrated_mm),
             ("evaporated_mm", ledger.evaporated_mm),
-            ("evaporation_mm_h", ground.evaporation_mm_h()),
+            ("evaporation_mm_h", penman_evaporation_mm_h(&conditions)),
         ]));
         if count >= steps {
             break;

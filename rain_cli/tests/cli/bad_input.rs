@@ -60,7 +60,7 @@ fn words_that_are_no_choice_are_refused() {
     refused(
         "canopy",
         &["lai=3", "kind=", "intensity_mm_h=3", "duration_s=1"],
-        &["kind is ,", "broadleaf, needle"],
+        &["kind is \"\",", "broadleaf, needle"],
     );
 }
 
@@ -98,7 +98,11 @@ fn numbers_outside_their_domains_are_refused_everywhere() {
                     .chain([format!("{}={value}", key.name)])
                     .collect();
                 let error = calculate(model.name, &arguments).expect_err("refused").to_string();
-                let expected = format!("{} is {value}, allowed: {}", key.name, key.allowed());
+                let shown = match value.as_str() {
+                    "" | " 1" => format!("{value:?}"),
+                    _ => value,
+                };
+                let expected = format!("{} is {shown}, allowed: {}", key.name, key.allowed());
                 assert_eq!(error, expected, "{}", model.name);
                 checked += 1;
             }
@@ -215,7 +219,7 @@ fn weather_names_the_file_and_the_place_in_it() {
     refused(
         "weather",
         &["timeline=", "duration_s=1", "step_s=1"],
-        &["timeline is ,", "path of a file"],
+        &["timeline is \"\",", "path of a file"],
     );
 }
 
@@ -226,4 +230,54 @@ fn too_much_work_is_refused() {
         &["cells=1024", "mode_x=1", "mode_y=0", "time_s=100000"],
         &["time_s", "allowed"],
     );
+}
+
+#[test]
+fn values_that_cannot_be_seen_are_quoted() {
+    refused(
+        "fall",
+        &["diameter_mm=", "height_m=1"],
+        &["diameter_mm is \"\", allowed"],
+    );
+    refused(
+        "fall",
+        &["diameter_mm= 2", "height_m=1"],
+        &["diameter_mm is \" 2\", allowed"],
+    );
+    refused(
+        "fall",
+        &["diameter_mm=2\n3", "height_m=1"],
+        &["diameter_mm is \"2\\n3\", allowed"],
+    );
+    refused("terminal-speed", &["diameter_mm=2", "fit="], &["fit is \"\", allowed"]);
+}
+
+#[test]
+fn infiltration_is_refused_in_the_names_of_its_keys() {
+    let common = ["timeline=none.csv", "duration_s=1", "step_s=1", "surface=soil"];
+    let with = |more: &'static str| [&common[..], &[more]].concat();
+    for more in ["infiltration_initial_mm_h=0", "infiltration_final_mm_h=10000"] {
+        refused(
+            "weather",
+            &with(more),
+            &[
+                "infiltration_initial_mm_h is ",
+                "allowed: infiltration_final_mm_h, here ",
+            ],
+        );
+    }
+    for more in ["infiltration_decay_per_h=0", "infiltration_decay_per_h=1001"] {
+        refused(
+            "weather",
+            &with(more),
+            &["infiltration_decay_per_h is ", "0.000001 to 1000 1/h"],
+        );
+    }
+}
+
+#[test]
+fn numbers_in_messages_are_short() {
+    let arguments = ["timeline=none.csv", "duration_s=1e8", "step_s=1e-290"].map(str::to_owned);
+    let error = calculate("weather", &arguments).expect_err("refused").to_string();
+    assert!(error.contains("duration_s/step_s is 1") && error.len() < 80, "{error}");
 }

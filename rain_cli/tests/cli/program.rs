@@ -395,3 +395,45 @@ fn bench_runs_in_a_checkout_only() {
     assert_eq!(output.status.code(), Some(2), "{err}");
     assert!(err.contains("/no/such/cargo does not start"), "{err}");
 }
+
+#[test]
+fn messages_name_the_line_that_an_editor_shows() {
+    let folder = folder();
+    for end in ["\n", "\r\n"] {
+        let rain = [
+            "# a storm",
+            "",
+            "time_s,intensity_mm_h",
+            "0,1",
+            "",
+            "# then",
+            "60,heavy",
+        ]
+        .join(end);
+        let timeline = format!("timeline={}", file(&folder, "rain.csv", rain.as_bytes()));
+        refused(
+            &["model", "weather", &timeline, "duration_s=9", "step_s=1"],
+            &["rain.csv: line 7, column 2: intensity_mm_h is \"heavy\""],
+        );
+        let heights = ["# heights", "9,9", "", "9,low"].join(end);
+        refused(
+            &["bake", &file(&folder, "heights.csv", heights.as_bytes())],
+            &["heights.csv: line 4, column 2: the height is \"low\""],
+        );
+    }
+}
+
+#[test]
+fn options_of_bake_are_checked_whatever_the_file() {
+    let folder = folder();
+    let path = file(&folder, "pit.csv", b"9,9,9\n9,1,9\n9,9,9\n");
+    refused(
+        &["bake", &path, "--cell-m", "-1"],
+        &["cell_m is -1, allowed: 0.0001 to 10000 m"],
+    );
+    refused(
+        &["bake", &path, "--height-scale-m", "nan"],
+        &["height_scale_m is NaN, allowed: -1e7 to 1e7 m"],
+    );
+    refused(&["bake", &path, "--cell-m", "1e300"], &["cell_m is 1e300, allowed"]);
+}

@@ -74,3 +74,23 @@ fn the_weathers_own_parameters_matter() {
         ]) < 0.1
     );
 }
+
+#[test]
+fn the_potential_evaporation_is_that_of_the_rows_own_moment() {
+    const WARMING: &str = "time_s,intensity_mm_h,air_temperature_c\n0,0,5\n3600,0,30\n";
+    let rates = |step: &str| -> Vec<f64> {
+        let arguments = ["timeline=w.csv", "duration_s=3600", step].map(str::to_owned);
+        let read = |_: &std::path::Path| Ok(WARMING.as_bytes().to_vec());
+        let json = calculate_with("weather", &arguments, &read).expect("a series").json();
+        let name = "\"evaporation_mm_h\":";
+        json.match_indices(name)
+            .map(|(at, _)| number(&json[at..], name, "evaporation_mm_h"))
+            .collect()
+    };
+    let (coarse, fine) = (rates("step_s=1800"), rates("step_s=900"));
+    assert_eq!(coarse, [fine[0], fine[2], fine[4]], "no step changes them");
+    assert!(
+        0.0 < coarse[0] && coarse[0] < coarse[1] && coarse[1] < coarse[2],
+        "{coarse:?}"
+    );
+}

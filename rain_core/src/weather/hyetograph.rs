@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::conditions::WeatherConditions;
 use super::timeline::{Keyframe, Timeline, Transition};
 use crate::error::ConfigError;
+use crate::table_lines::TableLines;
 
 /// Most data rows a table may have (11.5 days of one row a second).
 pub const MAX_HYETOGRAPH_ROWS: usize = 1_000_000;
@@ -96,19 +97,19 @@ fn read_table(reader: impl Read, base: &WeatherConditions, max_rows: usize) -> R
         .flexible(true)
         .quoting(false)
         .has_headers(false)
-        .from_reader(reader);
+        .from_reader(TableLines::new(reader));
     let mut record = csv::StringRecord::new();
 
     if !next_record(&mut csv, &mut record)? {
         return Err(at(1, 1, HyetographProblem::MissingColumn("time_s")));
     }
-    let header_line = line_of(&record);
+    let header_line = csv.get_ref().next_record();
     let header = parse_header(&record, header_line)?;
 
     let mut keys: Vec<Keyframe> = Vec::new();
     let mut line = header_line;
     while next_record(&mut csv, &mut record)? {
-        line = line_of(&record);
+        line = csv.get_ref().next_record();
         if keys.len() == max_rows {
             return Err(at(line, 1, HyetographProblem::TooManyRows(max_rows)));
         }
@@ -144,10 +145,6 @@ fn at(line: u64, column: usize, problem: HyetographProblem) -> HyetographError {
     HyetographError { line, column, problem }
 }
 
-fn line_of(record: &csv::StringRecord) -> u64 {
-    record.position().map_or(0, csv::Position::line)
-}
-
 fn column_of(header: &[&'static str], name: &str) -> usize {
     header
         .iter()
@@ -155,11 +152,12 @@ fn column_of(header: &[&'static str], name: &str) -> usize {
         .map_or(1, |index| index + 1)
 }
 
-fn next_record<R: Read>(csv: &mut csv::Reader<R>, record: &mut csv::StringRecord) -> Result<bool, HyetographError> {
+fn next_record<R: Read>(
+    csv: &mut csv::Reader<TableLines<R>>,
+    record: &mut csv::StringRecord,
+) -> Result<bool, HyetographError> {
     csv.read_record(record).map_err(|error| {
-        let line = error
-            .position()
-            .map_or_else(|| csv.position().line(), csv::Position::line);
+        let line = csv.get_ref().next_record();
         let column = match error.kind() {
             csv::ErrorKind::Utf8 { err, .. } => err.field() + 1,
             _ => 1,

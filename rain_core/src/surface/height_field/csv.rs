@@ -4,6 +4,9 @@ use std::io::Read;
 
 use thiserror::Error;
 
+use crate::error::shown;
+use crate::table_lines::TableLines;
+
 use super::{GridFrame, HeightField, HeightFieldError, ImportLimits, MAX_COORDINATE_M, MAX_SIDE_CELLS};
 
 /// What can be wrong in a table of heights.
@@ -13,7 +16,7 @@ pub enum CsvProblem {
     #[error("the height is {0:?}, which is not a number; a hole is NaN or empty")]
     NotANumber(String),
     /// A height that is infinite or too large.
-    #[error("the height is {0} m, allowed: -1e7 to 1e7 m, or NaN for a hole")]
+    #[error("the height is {} m, allowed: -1e7 to 1e7 m, or NaN for a hole", shown(*.0))]
     Height(f64),
     /// A row with more or fewer heights than the first.
     #[error("the row has {found} heights, the first row {expected}")]
@@ -61,9 +64,9 @@ impl HeightField {
             .flexible(true)
             .quoting(false)
             .has_headers(false)
-            .from_reader(bytes);
+            .from_reader(TableLines::new(bytes));
         let table = read_rows(&mut csv, limits);
-        if csv.get_ref().limit() == 0 {
+        if csv.get_ref().inner().limit() == 0 {
             let allowed = limits.bytes;
             return Err(at(csv.position().line(), 1, CsvProblem::TooLong { allowed }));
         }
@@ -74,22 +77,22 @@ impl HeightField {
 
 /// Cells along x and z, and the heights.
 fn read_rows(
-    csv: &mut csv::Reader<impl Read>,
+    csv: &mut csv::Reader<TableLines<impl Read>>,
     limits: &ImportLimits,
 ) -> Result<([usize; 2], Vec<f64>), HeightFieldError> {
     let mut record = csv::StringRecord::new();
     let mut heights = Vec::new();
-    let (mut nx, mut rows, mut line) = (0, 0, 1);
+    let (mut nx, mut rows) = (0, 0);
     loop {
         match csv.read_record(&mut record) {
             Ok(true) => {}
             Ok(false) => break,
             Err(error) => {
-                let line = error.position().map_or(line, csv::Position::line);
+                let line = csv.get_ref().next_record();
                 return Err(at(line, 1, CsvProblem::Unreadable(error)));
             }
         }
-        line = record.position().map_or(line, csv::Position::line);
+        let line = csv.get_ref().next_record();
         if rows == 0 {
             nx = record.len();
         }

@@ -27,7 +27,7 @@ mod triangles;
 
 use thiserror::Error;
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, in_range, shown};
 
 pub use csv::CsvProblem;
 #[cfg(feature = "import")]
@@ -91,7 +91,10 @@ pub enum HeightFieldError {
         expected: usize,
     },
     /// A height that is infinite or beyond ±[`MAX_COORDINATE_M`].
-    #[error("the height in column {column}, row {row} is {value} m, allowed: -1e7 to 1e7 m, or NaN for a hole")]
+    #[error(
+        "the height in column {column}, row {row} is {} m, allowed: -1e7 to 1e7 m, or NaN for a hole",
+        shown(*.value)
+    )]
     Height {
         /// Column, from 0.
         column: usize,
