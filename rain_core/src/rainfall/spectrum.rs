@@ -197,10 +197,11 @@ pub(super) fn exponential_moment(slope: f64, n: u32, a: f64, b: f64) -> f64 {
     let Some((a, b)) = diameters(a, b) else { return 0.0 };
     // Q(x) = e^(−x) Σ xʲ/j!, j = 0..n, is the upper share beyond x = ΛD.
     let upper = |d: f64| {
-        if d == f64::INFINITY {
+        let x = slope * d;
+        // Nothing is left of e^(−x); far beyond, the sum overflows.
+        if x > 1e3 {
             return 0.0;
         }
-        let x = slope * d;
         let mut term = 1.0;
         let mut sum = 1.0;
         for j in 1..=n {
