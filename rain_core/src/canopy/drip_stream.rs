@@ -109,8 +109,8 @@ pub struct Drip {
 /// The drop that is nearest, in time, to the point `distance_m` below the leaf.
 ///
 /// `phase`: fraction of the next drop that has gathered, [0, 1); `period_s`: seconds between drops, shorter ones count
-/// as 1e-6; `terminal_m_s` as [`drip_fall_time_s`]. None without a finite period above 0 or with a phase that is not finite. Whether the drop is
-/// still in the air is for the caller to tell from `distance_m` and the place's height.
+/// as 1e-6; `terminal_m_s` as [`drip_fall_time_s`]. None without a finite period above 0 or with a phase that is not
+/// finite. Whether the drop is still in the air is for the caller to tell from `distance_m` and the place's height.
 /// Source: Weber et al. 2016, eqs. 8 and 9, with time put in (as printed the drop stands still).
 /// Error: that of [`drip_distance_m`].
 #[must_use]
