@@ -32,7 +32,7 @@ pub fn unit_f32(h: u32) -> f32 {
     (h >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// Uniform in (0, 1): the centre of one of 2²⁴ intervals, so its logarithm is finite.
+/// Uniform in (0, 1): the centre of one of 2²³ intervals, so its logarithm is finite.
 #[must_use]
 pub fn open_unit_f32(h: u32) -> f32 {
     // 24 bits and a half need 25: one bit less keeps the sum exact and below 1.

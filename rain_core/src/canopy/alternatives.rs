@@ -1,5 +1,6 @@
 //! Other ways to solve the storage equation, kept for comparison. The default is exact: [`CanopyStore`](super::CanopyStore).
 
+use super::store::LEAST_RAIN_MM_H;
 use crate::error::clamped;
 use crate::ops;
 
@@ -25,18 +26,20 @@ pub fn stored_by_splitting(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, eva
 /// Stored depth after `dt_s` by Lambert's W: y = y_e (1 + W₀(x₀ e^(x₀ − R t/(2 S y_e)))), x₀ = y₀/y_e − 1.
 ///
 /// Arguments, units and clamps as [`stored_by_splitting`]. Above exponents of 700 it uses W₀(e^z) ≈ the root of
-/// w + ln w = z. Source: physics of [`CanopyStore`](super::CanopyStore) in closed form.
-/// Error: 1e-13 S; the change over a short step is a difference of two such values, and times cannot be asked for.
+/// w + ln w = z; rain below 1e-9 mm/h counts as none. Source: physics of [`CanopyStore`](super::CanopyStore) in closed form.
+/// Error: 1e-13 S up to E = 5 R; beyond, 1 + W₀ cancels and the error grows as (E/R)² to 2e-5 S at E = 2e5 R, from where
+/// splitting is nearer and is used. The change over a short step is a difference of two such values, and times cannot be
+/// asked for.
 #[must_use]
 pub fn stored_by_lambert_w(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, evaporation_mm_h: f64, dt_s: f64) -> f64 {
     let Some(case) = Case::new(capacity_mm, stored_mm, rain_mm_h, evaporation_mm_h, dt_s) else {
         return 0.0;
     };
-    if case.evaporation <= 1e-12 * case.rain {
-        return stored_by_splitting(capacity_mm, stored_mm, rain_mm_h, evaporation_mm_h, dt_s);
-    }
-    if case.rain == 0.0 {
+    if case.rain * 3600.0 < LEAST_RAIN_MM_H {
         return case.stored * ops::exp(-case.evaporation * case.dt / case.capacity);
+    }
+    if case.evaporation <= 1e-12 * case.rain || case.evaporation >= 2e5 * case.rain {
+        return stored_by_splitting(capacity_mm, stored_mm, rain_mm_h, evaporation_mm_h, dt_s);
     }
     let equilibrium = case.evaporation / case.rain;
     let start = ops::sqrt(1.0 - case.stored / case.capacity);

@@ -1,6 +1,7 @@
 //! From rain and shares to drops per second.
 
 use crate::error::clamped;
+use crate::rainfall::drop_volume_mm3;
 
 /// Largest product of shares, areas and rates that counts; keeps frequencies finite.
 const MOST: f64 = 1e12;
@@ -8,8 +9,7 @@ const MOST: f64 = 1e12;
 /// Volume of a drop of `diameter_mm`. Units: m³. A diameter that is not above 0 has none; held at 100 mm.
 #[must_use]
 pub fn drop_volume_m3(diameter_mm: f64) -> f64 {
-    let d = clamped(diameter_mm, 0.0, 100.0) * 1e-3;
-    core::f64::consts::PI / 6.0 * d * d * d
+    1e-9 * drop_volume_mm3(clamped(diameter_mm, 0.0, 100.0))
 }
 
 /// Volume that drips per second, Q = R A q_t q_s q_d/3.6e6.

@@ -14,6 +14,9 @@ const SPEEDS_M_S: (f64, f64) = (1e-3, 1e3);
 /// Longest fall that counts. Units: m, s.
 const LONGEST: f64 = 1e9;
 
+/// Shortest period that is looked at: a jet, no drops, and numbers of drops in the air stay finite. Units: s.
+const SHORTEST_PERIOD_S: f64 = 1e-6;
+
 /// Time to fall `distance_m` from rest, t(d) = (v/g) arcosh(e^(g d/v²)). Units: s.
 ///
 /// `distance_m` in m, held in [0, 1e9]; `terminal_m_s` in m/s, held in [1e-3, 1e3]; what is not a number counts as the
@@ -105,9 +108,9 @@ pub struct Drip {
 
 /// The drop that is nearest, in time, to the point `distance_m` below the leaf.
 ///
-/// `phase`: fraction of the next drop that has gathered, [0, 1); `period_s`: seconds between drops; `terminal_m_s` as
-/// [`drip_fall_time_s`]. None without a finite period above 0 or with a phase that is not finite. Whether the drop is
-/// still in the air is for the caller to tell from `distance_m` and the place's height.
+/// `phase`: fraction of the next drop that has gathered, [0, 1); `period_s`: seconds between drops, shorter ones count
+/// as 1e-6; `terminal_m_s` as [`drip_fall_time_s`]. None without a finite period above 0 or with a phase that is not
+/// finite. Whether the drop is still in the air is for the caller to tell from `distance_m` and the place's height.
 /// Source: Weber et al. 2016, eqs. 8 and 9, with time put in (as printed the drop stands still).
 /// Error: that of [`drip_distance_m`].
 #[must_use]
@@ -115,6 +118,7 @@ pub fn nearest_drip(distance_m: f64, period_s: f64, phase: f64, terminal_m_s: f6
     if !(period_s > 0.0 && period_s.is_finite() && phase.is_finite()) {
         return None;
     }
+    let period_s = period_s.max(SHORTEST_PERIOD_S);
     let phase = phase - phase.floor();
     let index = (drip_fall_time_s(distance_m, terminal_m_s) / period_s - phase + 0.5)
         .floor()
@@ -144,6 +148,7 @@ pub fn nearest_drip_f32(distance_m: f32, period_s: f32, phase: f32, terminal_m_s
     if !(period_s > 0.0 && period_s.is_finite() && phase.is_finite()) {
         return None;
     }
+    let period_s = period_s.max(SHORTEST_PERIOD_S as f32);
     let phase = phase - phase.floor();
     let index = (drip_fall_time_s_f32(distance_m, terminal_m_s) / period_s - phase + 0.5)
         .floor()

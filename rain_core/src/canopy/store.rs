@@ -15,7 +15,7 @@ const MAX_INTERVAL_S: f64 = 1e9;
 const MAX_EVAPORATION_MM_H: f64 = 1e4;
 
 /// Intercepted rain below this falls through: less than a hundredth of a millimetre in a thousand years. Units: mm/h.
-const LEAST_RAIN_MM_H: f64 = 1e-9;
+pub(super) const LEAST_RAIN_MM_H: f64 = 1e-9;
 
 /// Largest capacity accepted. Units: mm.
 const MAX_CAPACITY_MM: f64 = 100.0;

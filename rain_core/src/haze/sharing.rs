@@ -9,7 +9,7 @@
 //! Exact for uniform rain. Contrast gain on drawn streaks is outside this account.
 
 use super::extinction::{obscured, transmittance};
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::rainfall::{CLASS_COUNT, CLASS_EDGES_MM, Spectrum};
 
 /// Ramp in which drops appear in front of the eye. Units: m.
@@ -22,6 +22,8 @@ const MID_NEAREST_M: f64 = 3.2;
 const MIN_RANGE_M: f64 = 0.25;
 /// Longest way that is looked at. Units: m.
 const MAX_WAY_M: f64 = 1e9;
+/// Longest range of a [`FogTable`]: single drops have then ended where its entries do. Units: m.
+const MAX_TABLE_RANGE_M: f64 = MID_END_M[1] / 1.2;
 
 /// t²(3 − 2t) between `from` and `to` (`from` < `to`), 0 before, 1 after. NaN gives 0. Units: none.
 ///
@@ -273,8 +275,8 @@ pub struct FogTable {
 }
 
 impl FogTable {
-    /// `range_m`: z_s(D), from mm to m; others as in [`HazeSharing::new`]. About 100 µs: rebuild when rain or quality
-    /// changes.
+    /// `range_m`: z_s(D), from mm to m, at most 30 m, longer ones count as that; others as in [`HazeSharing::new`].
+    /// About 100 µs: rebuild when rain or quality changes.
     ///
     /// # Errors
     /// When Q is not finite or outside [1, 4].
@@ -292,7 +294,10 @@ impl FogTable {
             let (from, to) = (CLASS_EDGES_MM[i / CUTS], CLASS_EDGES_MM[i / CUTS + 1]);
             let at = |j: usize| from + (to - from) * j as f64 / CUTS as f64;
             let (low, high) = (at(i % CUTS), at(i % CUTS + 1));
-            *slice = (spectrum.extinction_per_m(low, high), range_m(0.5 * (low + high)));
+            *slice = (
+                spectrum.extinction_per_m(low, high),
+                clamped(range_m(0.5 * (low + high)), 0.0, MAX_TABLE_RANGE_M),
+            );
         }
         let total = q * spectrum.extinction_per_m(0.0, f64::INFINITY);
         let depth = core::array::from_fn(|i| {

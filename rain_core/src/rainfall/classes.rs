@@ -1,6 +1,7 @@
 //! The twelve size classes of the drop field: all drops of a class move rigidly at one speed.
 
 use super::terminal_velocity::{density_factor, terminal_velocity};
+use crate::error::clamped;
 
 /// Number of size classes.
 pub const CLASS_COUNT: usize = 12;
@@ -101,11 +102,17 @@ impl SizeClass {
 
 /// Range beyond which a drop's streak stays below one 8-bit step of contrast, z₁ = 255·(π/4)·D²f/(vT).
 ///
-/// `diameter_mm` in mm, `focal_px` in pixels, `exposure_s` in s. Units: m.
+/// `diameter_mm` in mm, `focal_px` in pixels, `exposure_s` in s, each held in [0, 1e6]; NaN counts as 0. Units: m, in
+/// [0, 1e9]: 0 without a drop or a picture, 1e9 without an exposure.
+///
+/// Error: rounding.
 #[must_use]
 pub fn visible_range_m(diameter_mm: f64, focal_px: f64, exposure_s: f64) -> f64 {
+    let [diameter_mm, focal_px, exposure_s] = [diameter_mm, focal_px, exposure_s].map(|x| clamped(x, 0.0, 1e6));
     let d = diameter_mm * 1e-3;
-    255.0 * core::f64::consts::FRAC_PI_4 * d * d * focal_px / (terminal_velocity(diameter_mm) * exposure_s)
+    let numerator = 255.0 * core::f64::consts::FRAC_PI_4 * d * d * focal_px;
+    let range = numerator / (terminal_velocity(diameter_mm) * exposure_s);
+    if numerator > 0.0 { range.min(1e9) } else { 0.0 }
 }
 
 #[cfg(test)]

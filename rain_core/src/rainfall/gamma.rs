@@ -179,8 +179,9 @@ impl GammaSpectrum {
     /// Error: 1e-9 relative.
     #[must_use]
     pub fn concentration(&self, diameter_mm: f64) -> f64 {
-        if (0.0..f64::INFINITY).contains(&diameter_mm) {
-            let x = diameter_mm / self.mean_diameter_mm;
+        let x = diameter_mm / self.mean_diameter_mm;
+        // Beyond, nothing is left of the exponential, and the power would overflow.
+        if (0.0..1e3).contains(&x) {
             self.nw_per_m3_mm * self.factor * ops::pow(x, self.shape) * ops::exp(-(4.0 + self.shape) * x)
         } else {
             0.0

@@ -86,21 +86,27 @@ impl DropSizes {
         };
         let approach = |d: f64| speed_m_s(d) * normal.y - wind_m_s.dot(normal);
         // The approach speed changes sign at most once, as v rises with D: a border there spares a kink.
-        let (mut low, mut high) = (a, b.min(a + self.end_mm()));
-        let side = approach(low) > 0.0;
-        if side != (approach(high) > 0.0) {
-            for _ in 0..60 {
-                let mid = 0.5 * (low + high);
-                if (approach(mid) > 0.0) == side {
-                    low = mid;
-                } else {
-                    high = mid;
-                }
+        let turn = turning(a, b.min(a + self.end_mm()), approach);
+        let hits = |d: f64| weight(d) * approach(d).max(0.0);
+        self.integral(a, turn, hits) + self.integral(turn, b, hits)
+    }
+}
+
+/// Where a monotone function changes sign between `a` and `b`; `a` where it does not.
+pub(crate) fn turning(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (a, b);
+    let side = f(low) > 0.0;
+    if side != (f(high) > 0.0) {
+        for _ in 0..60 {
+            let mid = 0.5 * (low + high);
+            if (f(mid) > 0.0) == side {
+                low = mid;
+            } else {
+                high = mid;
             }
         }
-        let hits = |d: f64| weight(d) * approach(d).max(0.0);
-        self.integral(a, low, hits) + self.integral(low, b, hits)
     }
+    low
 }
 
 /// Measured kinetic energy per depth of rain, 28.3 (1 − 0.52 e^(−0.042 R)). Units: J/m² per mm.

@@ -39,6 +39,7 @@ pub use fall::{
 pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
 pub use gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};
 pub use impacts::measured_energy_j_m2_mm;
+pub(crate) use impacts::turning;
 pub use oscillation::{
     Oscillation, mode_decay_s, mode_frequency_hz, oscillating_radius_f32, phase_turns, sustained_amplitude,
 };

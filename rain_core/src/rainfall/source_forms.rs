@@ -17,7 +17,7 @@ pub const NGUYENOVA_DIAMETERS_MM: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
 /// Both call it a number in 1 m³; it is a density. `intensity_mm_h` in mm/h: 0, below or NaN gives 0; held at 500.
 /// `diameter_mm` in mm, the **diameter** (Nguyenova writes radius); negative or NaN gives 0.
 ///
-/// Error: 1e-15 against the formula; carries 2 to 19 % more than R.
+/// Error: 1e-15 against the formula; carries 2 to 19 % more than R from 0.1 to 150 mm/h, 8 % less at 500.
 #[must_use]
 pub fn printed_concentration(intensity_mm_h: f64, diameter_mm: f64) -> f64 {
     if intensity_mm_h > 0.0 && diameter_mm >= 0.0 {

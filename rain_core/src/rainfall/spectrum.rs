@@ -158,31 +158,36 @@ impl Spectrum {
         self.n0_per_m3_mm as f32 * exponential_moment_f32(self.slope_per_mm as f32, n, a_mm, b_mm)
     }
 
-    /// ∫ N Dⁿ v dD over [a, b] mm with [`terminal_velocity`]. Units: m⁻² s⁻¹ mmⁿ. `b` may be infinite.
+    /// ∫ N Dⁿ v dD over [a, b] mm with [`terminal_velocity`]. Units: m⁻² s⁻¹ mmⁿ. Domain and clamps as
+    /// [`Spectrum::moment`].
+    ///
+    /// Error: 1e-7 relative.
     #[must_use]
     pub fn flux_moment(&self, n: u32, a_mm: f64, b_mm: f64) -> f64 {
-        self.n0_per_m3_mm * weighted_integral(self.slope_per_mm, n, a_mm, b_mm, terminal_velocity)
+        self.n0_per_m3_mm * flux_integral(self.slope_per_mm, n, a_mm, b_mm)
     }
 
-    /// Rain rate carried by diameters in [a, b] mm. Units: mm/h.
+    /// Rain rate carried by diameters in [a, b] mm. Units: mm/h. As [`Spectrum::flux_moment`]. Error: 1e-7 relative.
     #[must_use]
     pub fn rain_rate_mm_h(&self, a_mm: f64, b_mm: f64) -> f64 {
         FLUX_FACTOR * self.flux_moment(3, a_mm, b_mm)
     }
 
-    /// Geometric extinction σ_geo = (π/4) ∫ D² N dD over [a, b] mm. Units: m⁻¹.
+    /// Geometric extinction σ_geo = (π/4) ∫ D² N dD over [a, b] mm. Units: m⁻¹. As [`Spectrum::moment`]. Error: 1e-10
+    /// relative.
     #[must_use]
     pub fn extinction_per_m(&self, a_mm: f64, b_mm: f64) -> f64 {
         core::f64::consts::FRAC_PI_4 * 1e-6 * self.moment(2, a_mm, b_mm)
     }
 
-    /// Flux-weighted mean of 1/v over the diameters drawn as drops: how far wind carries rain sideways
-    /// per metre of fall and m/s of wind. Units: s/m.
+    /// Flux-weighted mean of 1/v over the drops of 0.2 to 6 mm: how far wind carries rain sideways per metre of fall and
+    /// m/s of wind. Units: s/m. Also where it is dry.
+    ///
+    /// Error: 1e-7 relative.
     #[must_use]
     pub fn mean_inverse_velocity(&self) -> f64 {
         let (a, b) = (0.2, 6.0);
-        let flux = weighted_integral(self.slope_per_mm, 3, a, b, terminal_velocity);
-        exponential_moment(self.slope_per_mm, 3, a, b) / flux
+        exponential_moment(self.slope_per_mm, 3, a, b) / flux_integral(self.slope_per_mm, 3, a, b)
     }
 }
 
@@ -197,10 +202,11 @@ pub(super) fn exponential_moment(slope: f64, n: u32, a: f64, b: f64) -> f64 {
     let Some((a, b)) = diameters(a, b) else { return 0.0 };
     // Q(x) = e^(−x) Σ xʲ/j!, j = 0..n, is the upper share beyond x = ΛD.
     let upper = |d: f64| {
-        if d == f64::INFINITY {
+        let x = slope * d;
+        // Nothing is left of e^(−x); far beyond, the sum overflows.
+        if x > 1e3 {
             return 0.0;
         }
-        let x = slope * d;
         let mut term = 1.0;
         let mut sum = 1.0;
         for j in 1..=n {
@@ -252,8 +258,9 @@ pub(super) fn power(d: f64, n: u32) -> f64 {
     (0..n).map(|_| d).product()
 }
 
-/// ∫ₐᵇ e^(−ΛD) Dⁿ w(D) dD by Gauss–Legendre panels short against 1/Λ and the fall-speed fit's own wiggles.
-fn weighted_integral(slope: f64, n: u32, a: f64, b: f64, weight: impl Fn(f64) -> f64) -> f64 {
+/// ∫ₐᵇ e^(−ΛD) Dⁿ v dD by Gauss–Legendre panels of at most six decay lengths, short against the fit's
+/// wiggles.
+fn flux_integral(slope: f64, n: u32, a: f64, b: f64) -> f64 {
     const PANELS: u32 = 8;
     let Some((a, b)) = diameters(a, b) else { return 0.0 };
     // e^(−45) D³ is below 1e-15 of the integral.
@@ -261,7 +268,7 @@ fn weighted_integral(slope: f64, n: u32, a: f64, b: f64, weight: impl Fn(f64) ->
     // The fit has a corner where it is clamped: a panel border there keeps the rule's order.
     let corner = super::terminal_velocity::MAX_FITTED_DIAMETER_MM;
     let rule = GaussLegendre::<8>::RULE;
-    let integrand = |d: f64| ops::exp(-slope * d) * power(d, n) * weight(d);
+    let integrand = |d: f64| ops::exp(-slope * d) * power(d, n) * terminal_velocity(d);
     [(a, end.min(corner)), (a.max(corner), end)]
         .into_iter()
         .filter(|(from, to)| to > from)

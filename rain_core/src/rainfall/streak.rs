@@ -69,7 +69,11 @@ pub fn streak_opacity(across_m: f64, along_m: f64, diameter_m: f64, path_m: f64)
     }
     let chord = ops::sqrt(square);
     let (from, to) = (along_m - chord, along_m + chord);
-    if path_m.is_nan() || path_m <= 0.0 {
+    // `min` and `max` would hide it.
+    if from.is_nan() || path_m.is_nan() {
+        return 0.0;
+    }
+    if path_m <= 0.0 {
         return if from <= 0.0 && to >= 0.0 { 1.0 } else { 0.0 };
     }
     let share = (to.min(path_m) - from.max(0.0)) / path_m;
@@ -90,7 +94,11 @@ pub fn streak_opacity_f32(across: f32, along: f32, diameter: f32, path: f32) -> 
     }
     let chord = square.sqrt();
     let (from, to) = (along - chord, along + chord);
-    if path.is_nan() || path <= 0.0 {
+    // `min` and `max` would hide it.
+    if from.is_nan() || path.is_nan() {
+        return 0.0;
+    }
+    if path <= 0.0 {
         return if from <= 0.0 && to >= 0.0 { 1.0 } else { 0.0 };
     }
     // Mid-streak the two ends do not matter: their difference would cost digits.
@@ -124,7 +132,7 @@ impl ScreenStreak {
     /// `diameter_m` ≥ 0; `focal_px`: focal length in pixels, > 0; `near_m`: near plane, > 0. What lies before the near plane
     /// is cut off before the division by depth, and its share of the exposure with it. The drop's size is that at the
     /// geometric mean of both depths, which makes the sum exact: the mean of 1/z² over the way is 1/(z₁ z₂).
-    /// `None` when all of it is before the near plane or a value is out of range or not finite.
+    /// `None` when all of it is before the near plane or a value, of the result too, is out of range or not finite.
     ///
     /// Error: opacity × length × width is (π/4)(D f)²/(z₁ z₂) × share of the exposure within 3e-6 of the exact integral.
     #[must_use]
@@ -141,6 +149,10 @@ impl ScreenStreak {
         let size = diameter_m * focal_px / (head_depth.sqrt() * tail_depth.sqrt());
         let length_px = (head_px.distance(tail_px) + size).max(1.0);
         let width_px = size.max(1.0);
+        // Also where an end lies beyond all numbers.
+        if !length_px.is_finite() {
+            return None;
+        }
         Some(Self {
             head_px,
             tail_px,

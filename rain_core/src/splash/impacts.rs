@@ -4,7 +4,10 @@ use glam::DVec3;
 
 use super::numbers::water_drop_kg;
 use super::threshold::splash_threshold_diameter_mm;
-use crate::rainfall::{MAX_FITTED_DIAMETER_MM, Spectrum, terminal_velocity};
+use crate::constants::{M_S_PER_MM_H, WATER_DENSITY};
+use crate::error::clamped;
+use crate::quadrature::GaussLegendre;
+use crate::rainfall::{MAX_FITTED_DIAMETER_MM, Spectrum, terminal_velocity, turning};
 
 /// Largest diameter that counts. Units: mm.
 const END_MM: f64 = 100.0;
@@ -44,18 +47,13 @@ impl ImpactFlux {
             DVec3::ZERO
         };
         let normal = normal.try_normalize().unwrap_or(DVec3::Y);
-        let from = crate::error::clamped(min_mm, 0.0, END_MM);
-        let to = crate::error::clamped(max_mm, 0.0, END_MM).min(from + END_DECAYS / spectrum.slope_per_mm);
+        let from = clamped(min_mm, 0.0, END_MM);
+        let to = clamped(max_mm, 0.0, END_MM).min(from + END_DECAYS / spectrum.slope_per_mm);
         // Where the approach changes sign, and where the fall speed's fit has its corner: the integrand is smooth between.
         let approach = |d: f64| terminal_velocity(d) * normal.y - wind.dot(normal);
-        let mut borders = [from, to, to];
-        borders[1] = MAX_FITTED_DIAMETER_MM.clamp(from, to.max(from));
+        let corner = MAX_FITTED_DIAMETER_MM.clamp(from, to.max(from));
         let mut flux = Self::default();
-        for pair in borders.windows(2) {
-            let [a, b] = [pair[0], pair[1]];
-            if b <= a {
-                continue;
-            }
+        for [a, b] in [[from, corner], [corner, to]] {
             let turn = turning(a, b, approach);
             for [a, b] in [[a, turn], [turn, b]] {
                 flux.add_between(spectrum, a, b, wind, approach);
@@ -70,51 +68,30 @@ impl ImpactFlux {
         Self::new(spectrum, min_mm, max_mm, DVec3::Y, DVec3::ZERO)
     }
 
-    /// Adds what falls between two diameters by Simpson's rule.
+    /// Adds what falls between two diameters, by panels short against the decay length and the bends of the fall speed's fit.
     fn add_between(&mut self, spectrum: &Spectrum, a: f64, b: f64, wind: DVec3, approach: impl Fn(f64) -> f64) {
         if b <= a || approach(0.5 * (a + b)) <= 0.0 {
             return;
         }
-        // Panels short against the decay length and against the bends of the fall speed's fit.
-        let bend = if a < MAX_FITTED_DIAMETER_MM { 0.05 } else { 1.0 };
-        let width = (0.1 / spectrum.slope_per_mm).min(bend);
-        let panels = ((b - a) / width).ceil().clamp(2.0, 4000.0) as u32;
-        let h = (b - a) / f64::from(2 * panels);
-        for i in 0..=2 * panels {
-            let weight = match i {
-                0 => 1.0,
-                i if i == 2 * panels => 1.0,
-                i if i % 2 == 1 => 4.0,
-                _ => 2.0,
-            };
-            let d = a + h * f64::from(i);
-            let toward = approach(d).max(0.0);
-            let number = weight * h / 3.0 * spectrum.concentration(d) * toward;
-            let mass = number * water_drop_kg(d);
-            let v = terminal_velocity(d);
-            self.number_per_m2_s += number;
-            self.water_mm_h += mass / crate::constants::WATER_DENSITY * 3.6e6;
-            self.energy_w_m2 += 0.5 * mass * (wind.x * wind.x + (wind.y - v) * (wind.y - v) + wind.z * wind.z);
-            self.pressure_pa += mass * toward;
+        let rule = GaussLegendre::<8>::RULE;
+        let width = (2.0 / spectrum.slope_per_mm).min(1.0);
+        let panels = ((b - a) / width).ceil().clamp(1.0, 100.0);
+        let half = 0.5 * (b - a) / panels;
+        for panel in 0..panels as u32 {
+            let mid = a + half * f64::from(2 * panel + 1);
+            for (node, weight) in rule.nodes.iter().zip(rule.weights) {
+                let d = mid + half * node;
+                let toward = approach(d).max(0.0);
+                let number = half * weight * spectrum.concentration(d) * toward;
+                let mass = number * water_drop_kg(d);
+                let v = terminal_velocity(d);
+                self.number_per_m2_s += number;
+                self.water_mm_h += mass / WATER_DENSITY / M_S_PER_MM_H;
+                self.energy_w_m2 += 0.5 * mass * (wind - v * DVec3::Y).length_squared();
+                self.pressure_pa += mass * toward;
+            }
         }
     }
-}
-
-/// Where a monotone function changes sign between `a` and `b`; `a` where it does not.
-fn turning(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (a, b);
-    if (f(a) > 0.0) == (f(b) > 0.0) {
-        return a;
-    }
-    for _ in 0..60 {
-        let mid = 0.5 * (low + high);
-        if (f(mid) > 0.0) == (f(a) > 0.0) {
-            low = mid;
-        } else {
-            high = mid;
-        }
-    }
-    0.5 * (low + high)
 }
 
 /// Drops that splash on level ground in still air under a film of `film_mm`. Units: 1/(m² s).

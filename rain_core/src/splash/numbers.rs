@@ -3,6 +3,7 @@
 use crate::constants::{WATER_DENSITY, WATER_SURFACE_TENSION, WATER_VISCOSITY};
 use crate::error::{clamped, clamped_f32};
 use crate::ops;
+use crate::rainfall::drop_mass_kg;
 
 /// Largest diameter that counts. Units: mm.
 pub(super) const LARGEST_MM: f64 = 100.0;
@@ -68,8 +69,7 @@ pub fn splash_k_f32(diameter_mm: f32, speed_m_s: f32) -> f32 {
 /// Mass of a drop of water. `diameter_mm` in mm, held in [0, 100], what is not a number counts as 0. Units: kg.
 #[must_use]
 pub fn water_drop_kg(diameter_mm: f64) -> f64 {
-    let d = clamped(diameter_mm, 0.0, LARGEST_MM) * 1e-3;
-    WATER_DENSITY * core::f64::consts::PI / 6.0 * d * d * d
+    drop_mass_kg(clamped(diameter_mm, 0.0, LARGEST_MM))
 }
 
 /// Momentum m v of a drop. Arguments as [`ImpactNumbers`]. Units: kg m/s. Error: rounding.

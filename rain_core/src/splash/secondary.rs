@@ -90,7 +90,11 @@ impl Impact {
             },
             velocity_m_s: finite(self.velocity_m_s),
             normal: self.normal.try_normalize().unwrap_or(Vec3::Y),
-            film_mm: self.film_mm,
+            film_mm: if self.film_mm.is_finite() {
+                self.film_mm.clamp(0.0, 1e6)
+            } else {
+                0.0
+            },
         }
     }
 

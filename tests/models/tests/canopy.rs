@@ -250,6 +250,18 @@ fn splitting_errs_as_published_and_lambert_w_hardly() {
         }
     }
     w.assert_below(1e-13, 165);
+    // Evaporation far above the rain: 1 + W₀ cancels.
+    let mut drying = Worst::default();
+    for exponent in -330..0 {
+        let rain = 10_f64.powf(f64::from(exponent) / if exponent < -100 { 1.0 } else { 10.0 });
+        for time in [1.0, 60.0, 600.0, 3000.0] {
+            let mut exact = closed_crown(0.6, 0.8).with_stored(0.3).expect("within");
+            exact.advance(rain, 0.5, time);
+            let value = stored_by_lambert_w(0.6, 0.3, rain, 0.5, time);
+            drying.absolute(value / 0.6, exact.stored_mm() / 0.6, || format!("R {rain:e}, {time} s"));
+        }
+    }
+    drying.assert_below(2e-5, 1320);
     for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
         for value in [
             stored_by_splitting(bad, 0.3, 1.0, 1.0, 1.0),

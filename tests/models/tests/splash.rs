@@ -413,6 +413,12 @@ fn splashes_throw_what_they_say_and_no_more_than_fell() {
     assert!(drizzle.kind == SplashKind::Deposition && drizzle.count == 0 && drizzle.thrown_mm3 == 0.0);
     assert_eq!(Splash::new(&falling(3.0, 0.0), [1, 1, 1]).kind, SplashKind::Prompt);
     assert_eq!(Splash::new(&falling(3.0, 1.0), [1, 1, 1]).kind, SplashKind::Crown);
+    for bad in [f32::NAN, f32::INFINITY, -1.0] {
+        assert_eq!(
+            Splash::new(&falling(3.0, bad), [1, 1, 1]),
+            Splash::new(&falling(3.0, 0.0), [1, 1, 1])
+        );
+    }
 }
 
 #[test]

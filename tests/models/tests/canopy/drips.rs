@@ -418,7 +418,13 @@ fn the_nearest_drop_falls_as_published() {
         assert_eq!(drip_crest(1.0, bad.min(0.0), 0.3, 9.0), -1.0);
     }
     assert_eq!(nearest_drip(1.0, 1.0, f64::NAN, 9.0), None);
-    assert!(nearest_drip(f64::INFINITY, 1e-300, 0.5, f64::NAN).is_some());
+    for period in [5e-324, 1e-300, 1e-30, 1e-6] {
+        let drip = nearest_drip(f64::INFINITY, period, 0.5, f64::NAN).expect("drips");
+        assert!(drip.age_s.is_finite() && drip.distance_m.is_finite(), "{drip:?}");
+        assert_eq!(drip, nearest_drip(f64::INFINITY, 1e-6, 0.5, f64::NAN).expect("drips"));
+    }
+    let single = nearest_drip_f32(f32::INFINITY, 1e-30, 0.5, 1e-3).expect("drips");
+    assert!(single.age_s.is_finite() && single.distance_m.is_finite(), "{single:?}");
 }
 
 proptest! {

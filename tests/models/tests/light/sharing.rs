@@ -163,6 +163,22 @@ fn the_table_is_the_integral_over_diameters() {
 }
 
 #[test]
+fn a_table_holds_ranges_that_end_within_it() {
+    let spectrum = rain(25.0);
+    let table = |range: f64| FogTable::new(&spectrum, 2.0, false, |_| range).expect("valid");
+    let sharing = HazeSharing::new(&spectrum, 2.0, [30.0; CLASS_COUNT], false).expect("valid");
+    for s in [20.0, 36.0, 60.0, 500.0] {
+        let (held, exact) = (f64::from(table(1e3).depth_f32(s as f32)), sharing.fog_depth(s));
+        assert_eq!(table(30.0).depth_f32(s as f32), table(1e3).depth_f32(s as f32));
+        // Within 0.02 m of rain.
+        assert!(
+            (held - exact).abs() < 0.02 * spectrum.extinction_per_m(0.0, f64::INFINITY),
+            "{s}: {held} {exact}"
+        );
+    }
+}
+
+#[test]
 fn sharing_refuses_bad_parameters_and_answers_every_way() {
     let spectrum = rain(10.0);
     let ranges = [5.0; CLASS_COUNT];

@@ -6,7 +6,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 use rain_core::rainfall::{
     ScreenStreak, circle_of_confusion_px, clip_to_near, contrast_gain, lamp_falloff_per_m2, streak_length_m,
-    streak_opacity, streak_opacity_f32, streak_path_m, streak_peak_opacity,
+    streak_opacity, streak_opacity_f32, streak_path_m, streak_peak_opacity, terminal_velocity, visible_range_m,
 };
 use rain_reference::fall::measured_speed;
 use rain_reference::light::streak as reference;
@@ -190,6 +190,18 @@ fn streaks_answer_every_number() {
         ] {
             assert!((0.0..=1.0).contains(&alpha), "{bad}: {alpha}");
         }
+        if bad.is_nan() {
+            for [across, along, diameter, path] in [
+                [bad, 0.5, 1.0, 5.0],
+                [0.0, bad, 1.0, 5.0],
+                [0.0, 0.5, bad, 5.0],
+                [0.0, 0.0, 1.0, bad],
+            ] {
+                assert_eq!(streak_opacity(across, along, diameter, path), 0.0);
+                let [across, along, diameter, path] = [across, along, diameter, path].map(|x| x as f32);
+                assert_eq!(streak_opacity_f32(across, along, diameter, path), 0.0);
+            }
+        }
         assert!(streak_path_m(bad, bad).is_finite() && streak_length_m(bad, bad, bad).is_finite());
         assert!(
             circle_of_confusion_px(bad, 1.0, 1.0, 2.0).is_finite() && circle_of_confusion_px(1.0, 1.0, bad, bad) >= 0.0
@@ -202,8 +214,31 @@ fn streaks_answer_every_number() {
         let sharp = ScreenStreak::project(p, p, 1e-3, 600.0, 0.1).expect("in view");
         assert!(sharp.blurred(single).opacity.is_finite());
     }
+    // Ends and sizes beyond all numbers.
+    let far = Vec3::new(1e30, 0.0, -1.0);
+    assert_eq!(ScreenStreak::project(far, p, 1e-3, 1e20, 0.1), None);
+    assert_eq!(ScreenStreak::project(p, p, 1e20, 1e20, 0.1), None);
     assert_eq!(streak_peak_opacity(2.0, 0.0), 1.0);
     assert_eq!(streak_peak_opacity(0.0, 0.0), 0.0);
+}
+
+#[test]
+fn the_visible_range_answers_every_number() {
+    // 1 mm, 623.5 px, 1/60 s: 255 (π/4) D² f/(v T).
+    let exact = 255.0 * FRAC_PI_4 * 1e-6 * 623.5 * 60.0 / terminal_velocity(1.0);
+    assert!((visible_range_m(1.0, 623.5, 1.0 / 60.0) / exact - 1.0).abs() < 1e-14);
+    for bad in NOT_NUMBERS.into_iter().chain([0.0, 5e-324, 1e300]) {
+        for range in [
+            visible_range_m(bad, 623.5, 0.01),
+            visible_range_m(2.0, bad, 0.01),
+            visible_range_m(2.0, 623.5, bad),
+            visible_range_m(bad, bad, bad),
+        ] {
+            assert!((0.0..=1e9).contains(&range), "{bad}: {range}");
+        }
+    }
+    assert_eq!(visible_range_m(0.0, 623.5, 0.01), 0.0);
+    assert_eq!(visible_range_m(2.0, 623.5, 0.0), 1e9);
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use rain_core::rainfall::{DropSizes, RainKind, gunn_kinzer, measured_energy_j_m2_mm, terminal_velocity};
+use rain_core::rainfall::{
+    Distribution, DropSizes, GammaSpectrum, RainKind, Spectrum, gunn_kinzer, measured_energy_j_m2_mm, terminal_velocity,
+};
 use rain_reference::fall_speed::measured;
 use rain_reference::spectrum as reference;
 
@@ -266,6 +268,30 @@ fn walls_catch_what_wind_drives_against_them() {
     for bad in [DVec3::NAN, DVec3::INFINITY] {
         assert_eq!(sizes.rain_on_surface_mm_h(bad, wind, a, b, gunn_kinzer), 0.0);
         assert_eq!(sizes.rain_on_surface_mm_h(DVec3::Y, bad, a, b, gunn_kinzer), 0.0);
+    }
+}
+
+#[test]
+fn a_huge_end_is_no_end() {
+    let gamma = GammaSpectrum::new(8000.0, 1.5, 3.0).unwrap();
+    let exponential = Spectrum::new(Distribution::MarshallPalmer, 10.0).unwrap();
+    for end in [1e3, 1e60, 1e150, f64::MAX] {
+        for n in 0..=8 {
+            let sizes = DropSizes::from(exponential);
+            let whole = sizes.moment(n, 0.5, f64::INFINITY);
+            assert!(
+                (sizes.moment(n, 0.5, end) / whole - 1.0).abs() < 1e-12,
+                "M{n} to {end:e}"
+            );
+            let whole = gamma.moment(n, 0.5, f64::INFINITY);
+            assert!(
+                (gamma.moment(n, 0.5, end) / whole - 1.0).abs() < 1e-12,
+                "M{n} to {end:e}"
+            );
+            assert_eq!(sizes.moment(n, end, f64::INFINITY), 0.0);
+        }
+        assert_eq!(gamma.concentration(end * 10.0), 0.0);
+        assert_eq!(exponential.concentration(end), 0.0);
     }
 }
 
