@@ -118,14 +118,15 @@ impl GreenAmpt {
         let infiltrated_mm = clamped(infiltrated_mm, 0.0, 1e12);
         let gravity = self.conductivity_mm_h * clamped(time_h, 0.0, 1e9);
         let m = self.front_mm();
-        if m <= 1e-9 * gravity || gravity == 0.0 {
-            // The front's part, M ln(1 + F/M), is below the last digits (or there is no time).
-            let start = infiltrated_mm + gravity;
-            return if m > 0.0 && gravity > 0.0 {
-                start + m * (ops::ln_1p(start / m) - ops::ln_1p(infiltrated_mm / m))
+        if m <= 1e-9 * gravity || m <= 1e-15 * infiltrated_mm || gravity == 0.0 {
+            // The front's part, M ln(1 + F/M), is that of F without it to the last digits (or there is no time).
+            let growth = gravity / (m + infiltrated_mm);
+            let part = if growth.is_finite() {
+                m * ops::ln_1p(growth)
             } else {
-                start
+                0.0
             };
+            return infiltrated_mm + gravity + part;
         }
         m * front_root(front(infiltrated_mm / m) + gravity / m)
     }

@@ -173,8 +173,9 @@ impl WaveField {
             (f64::from(depth_m[index]) * per_depth) as f32
         });
         let mut lost = [0.0; 2];
-        for (index, depth) in depth_m.iter().enumerate() {
-            if *depth == 0.0 {
+        for index in 0..cells {
+            // Not the depth itself: a denormal one is none over the deepest.
+            if self.relative_depth(index) == 0.0 {
                 lost[0] += f64::from(core::mem::take(&mut self.now[index]));
                 lost[1] += f64::from(core::mem::take(&mut self.before[index]));
             }

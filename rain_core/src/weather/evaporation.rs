@@ -5,10 +5,12 @@ use crate::error::clamped;
 use crate::ops;
 
 /// Saturation vapour pressure over water, 611.2 exp(17.67 T/(T + 243.5)). Units: °C in, Pa out.
-/// Domain: T in [−60, 60] °C. Source: Bolton 1980.
+/// Domain: T in [−60, 60] °C; for dew points it goes on to lower ones, as far as −200 °C. T is clamped to [−200, 60] °C
+/// (NaN: −200): the formula has a pole at −243.5 °C. Source: Bolton 1980.
 #[must_use]
 pub fn saturation_vapour_pressure_pa(temperature_c: f64) -> f64 {
-    611.2 * ops::exp(17.67 * temperature_c / (temperature_c + 243.5))
+    let t = clamped(temperature_c, -200.0, 60.0);
+    611.2 * ops::exp(17.67 * t / (t + 243.5))
 }
 
 /// Temperature at which air of this temperature and humidity is saturated; the inverse of Bolton's formula. Units: °C.

@@ -346,7 +346,18 @@ fn evaporation_is_penmans_and_daltons_over_the_domain() {
     dalton.assert_below(1e-14, 1000);
     dew.assert_below(1e-12, 24);
     assert!(wrong.error > 0.02, "a wind 5 % off goes unseen");
-    for any in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 0.0, 1e300] {
+    for any in [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        -243.5,
+        -244.0,
+        -1.0,
+        0.0,
+        1e300,
+    ] {
+        let pressure = saturation_vapour_pressure_pa(any);
+        assert!((0.0..2.1e4).contains(&pressure), "{any} °C: {pressure}");
         assert!(
             dew_point_c(any, 0.5).is_finite() && dew_point_c(15.0, any).is_finite(),
             "{any}"

@@ -160,7 +160,18 @@ impl BasinState {
             if self.is_pool(basins, index as u32) {
                 let curve = basins.curve(index as u32);
                 let slack = 1e-9 * (1.0 + curve.base_volume);
-                let (least, most) = (curve.base_volume - slack, curve.capacity.min(1e18) + slack);
+                let brim = if curve.capacity.is_finite() {
+                    curve.capacity
+                } else {
+                    1e18
+                };
+                // What is full stands at the brim; what cannot overflow is never full.
+                let least = if self.full[index] {
+                    curve.capacity
+                } else {
+                    curve.base_volume
+                } - slack;
+                let most = brim + slack;
                 in_range(
                     "volume_m3",
                     self.volumes[index].total(),

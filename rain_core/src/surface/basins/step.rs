@@ -8,6 +8,10 @@ use super::run::{BasinRun, Rates};
 /// Rates that differ by less than this share of what they are made of are equal.
 const EQUAL: f64 = 1e-13;
 
+/// Bends that a prediction looks ahead. Inflows change before most far events come true, and then all would have been
+/// in vain.
+const AHEAD: usize = 64;
+
 impl BasinRun {
     /// All pools at the start of a step, those that are full spilling.
     pub(super) fn begin(&mut self, time: f64) {
@@ -110,9 +114,10 @@ impl BasinRun {
                 drained: flow * time,
                 area,
                 flow,
+                rests_at: (self.spill[at] == 0.0).then_some(self.basins.curve(pool).capacity),
             }
         } else {
-            let mut march = self.pool(pool).march(self.state.volumes[at].total(), time);
+            let mut march = self.pool(pool).march(self.state.volumes[at].total(), time, usize::MAX);
             // An event that rounding puts just before the moment it was predicted for.
             let left = time - march.time;
             march.area_time += march.area * left;
@@ -153,18 +158,21 @@ impl BasinRun {
         totals.evaporated.add(evaporated);
         totals.infiltrated.add(infiltrated);
         totals.drained.add(march.drained);
-        let short = -volume.total();
-        if short > 0.0 {
-            // Rounding took more than there was.
+        let target = march.rests_at.or((volume.total() < 0.0).then_some(0.0));
+        if let Some(target) = target {
+            // What rounding put off the bend, or took more than there was.
+            let mut excess = volume.cut_to(target);
             let taker = if evaporation > 0.0 {
                 &mut totals.evaporated
             } else if seepage > 0.0 {
                 &mut totals.infiltrated
-            } else {
+            } else if march.drained > 0.0 {
                 &mut totals.drained
+            } else {
+                excess = excess.negated();
+                &mut totals.rain
             };
-            volume.add(short);
-            taker.add(-short);
+            taker.add_store(excess);
         }
         let rates = &mut self.rates;
         rates.rain += runoff + direct * march.area;
@@ -177,8 +185,8 @@ impl BasinRun {
         }
     }
 
-    /// Finds when a pool that is not full will be, or will part, if within the step.
-    fn predict(&mut self, pool: u32, now: f64) {
+    /// Finds when a pool that is not full will be, or will part, or has to be looked at again, if within the step.
+    pub(super) fn predict(&mut self, pool: u32, now: f64) {
         let at = pool as usize;
         if !self.predicting || self.state.full[at] {
             return;
@@ -194,10 +202,10 @@ impl BasinRun {
             && (!model.own_drains.is_empty() || volume + rates[0].min(rates[1]) * left <= model.curve.base_volume);
         let mut time = f64::INFINITY;
         if may_fill || may_part {
-            let march = model.march(volume, left);
-            if matches!(march.stop, Stop::Full | Stop::Split) {
+            let march = model.march(volume, left, AHEAD);
+            if matches!(march.stop, Stop::Full | Stop::Split) || march.time < left {
                 time = now + march.time;
-                self.parts[at] = march.stop == Stop::Split;
+                self.due[at] = march.stop;
             }
         }
         self.events.set(pool, time);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use rain_core::surface::basins::{BakeOptions, BasinForcing, BasinRun, Basins, Grid};
+use rain_core::surface::basins::{BakeOptions, BasinForcing, BasinRun, Basins, Drain, Grid, Inlet};
 use rain_reference::basins::{lossy_volume, paraboloid_depth};
 
 use super::terrain::{bake, config, small_fields, unit};
@@ -132,6 +132,116 @@ fn losses_follow_a_rough_bottom() {
     worst.assert_below(1e-10, 6);
     let wrong = lossy_volume(&cells, 0.5, 2e-5, 1.05 * 2e-6, 1800.0);
     assert!((wrong / lossy_volume(&cells, 0.5, 2e-5, 2e-6, 1800.0) - 1.0).abs() > 1e-3);
+}
+
+#[test]
+fn a_pool_that_rested_at_a_bend_leaves_it_the_same_way_however_time_is_cut() {
+    let mut rose = 0;
+    for case in 0..200_u64 {
+        let pick = |what: u64| unit(case, what, 21);
+        // A pit in a level yard of five cells: the drain holds the pool at the yard's level, until rain on open water
+        // alone is more than runoff and all losses, and wetting the yard pays.
+        let z = [0.0, 0.0, -1.0, 0.0, 0.0];
+        let drain = Drain {
+            x_m: 1.25,
+            z_m: 0.25,
+            inlet: Inlet::Constant {
+                capacity_m3_s: 1e-4 + 4e-4 * pick(0),
+            },
+        };
+        let options = BakeOptions {
+            closed: true,
+            drains: vec![drain],
+            ..BakeOptions::default()
+        };
+        let baked = Arc::new(Basins::bake(&Grid::new(5, 1, 0.5, &z), &options).unwrap());
+        let wet = BasinForcing {
+            rain_m_s: 1e-4 * pick(1),
+            runoff_m_s: 1.7e-3,
+            evaporation_m_s: 1e-4 + 1e-4 * pick(2),
+            seepage_m_s: 6e-4,
+        };
+        let open = BasinForcing {
+            rain_m_s: 1.9e-3,
+            runoff_m_s: 3e-5 * pick(3),
+            ..wet
+        };
+        let ends = [1500.0, 310.0, 11.7].map(|step| {
+            let mut run = BasinRun::new(Arc::clone(&baked));
+            let mut rested = 0.0;
+            for forcing in [&wet, &open] {
+                let mut now = 0.0;
+                while now < 1500.0 {
+                    let next = f64::min(now + step, 1500.0);
+                    run.advance(forcing, next - now).unwrap();
+                    now = next;
+                }
+                if forcing == &wet {
+                    rested = run.volume_m3(0);
+                }
+            }
+            assert!(run.ledger().residual_relative < 1e-12);
+            (rested, run.volume_m3(0))
+        });
+        for end in &ends {
+            assert!((end.1 - ends[0].1).abs() < 1e-9, "case {case}: {ends:?}");
+            rose += u32::from(end.0 == 0.25 && end.1 > 0.25);
+        }
+    }
+    assert!(rose > 100, "{rose}: the balance was there");
+}
+
+/// A lake in a bowl of n² cells, and so many hollows on the slope above that overflow into it one by one.
+fn lake(n: usize, every: usize) -> Arc<Basins> {
+    let (width, middle) = (2 * n, (n / 2) as f64);
+    let brim = 2e-5 * middle * middle;
+    let z: Vec<f64> = (0..width * n)
+        .map(|cell| {
+            let (x, y) = ((cell % width) as f64, (cell / width) as f64);
+            let border = x == 0.0 || y == 0.0 || x == (width - 1) as f64 || y == (n - 1) as f64;
+            let hollow = [cell % width, cell / width].map(|at| at % every == every / 2);
+            if border {
+                if x == 0.0 && y == middle { brim } else { 1e3 }
+            } else if x < n as f64 {
+                1e-5 * ((x - middle).powi(2) + (y - middle).powi(2)) + 1e-9 * unit(cell as u64, 0, 3)
+            } else {
+                let slope = brim + (x - n as f64) * 0.01 + (y - middle).abs() * 1e-4;
+                slope
+                    - if hollow == [true; 2] {
+                        0.05 * (0.2 + unit(cell as u64, 1, 3))
+                    } else {
+                        0.0
+                    }
+            }
+        })
+        .collect();
+    Arc::new(Basins::bake(&Grid::new(width, n, 0.1, &z), &BakeOptions::default()).unwrap())
+}
+
+#[test]
+fn many_inflows_into_a_lake_with_losses_end_as_in_short_steps() {
+    let baked = lake(61, 5);
+    assert!(baked.basins().len() > 100);
+    let forcing = BasinForcing {
+        evaporation_m_s: 1.5e-5,
+        ..BasinForcing::rain(1e-5)
+    };
+    let ends = [1, 400].map(|steps| {
+        let mut run = BasinRun::new(Arc::clone(&baked));
+        for _ in 0..steps {
+            run.advance(&forcing, 2e4 / f64::from(steps)).unwrap();
+        }
+        let ledger = run.ledger();
+        assert!(ledger.residual_relative < 1e-12, "{ledger:?}");
+        run
+    });
+    let mut worst = Worst::default();
+    for basin in 0..baked.basins().len() as u32 {
+        worst.absolute(ends[1].volume_m3(basin), ends[0].volume_m3(basin), || {
+            format!("{basin}")
+        });
+    }
+    worst.assert_below(1e-9, 100);
 }
 
 proptest! {

@@ -92,6 +92,27 @@ fn a_restored_run_goes_on_as_the_first() {
 }
 
 #[test]
+fn a_state_that_is_full_below_the_brim_is_refused() {
+    for closed in [false, true] {
+        let field = rain_reference::basins::Field {
+            closed,
+            ..drawn(&["999", "919", "999"])
+        };
+        let baked = Arc::new(bake(&field));
+        let mut run = BasinRun::new(Arc::clone(&baked));
+        run.add_water(4, 1.0).unwrap();
+        let text = ron::to_string(run.state()).unwrap();
+        let full = text.replace("full:[false]", "full:[true]");
+        assert_ne!(text, full);
+        assert!(BasinRun::restore(Arc::clone(&baked), ron::from_str(&text).unwrap()).is_ok());
+        assert!(
+            BasinRun::restore(baked, ron::from_str(&full).unwrap()).is_err(),
+            "{closed}"
+        );
+    }
+}
+
+#[test]
 fn bad_steps_are_refused_and_change_nothing() {
     let mut run = BasinRun::new(Arc::new(bake(&drawn(&["999", "919", "999"]))));
     run.add_water(4, 1.0).unwrap();

@@ -290,3 +290,23 @@ proptest! {
         prop_assert!(GULLY.capacity_m3_s(1.01 * depth) >= GULLY.capacity_m3_s(depth));
     }
 }
+
+#[test]
+fn soils_of_hardly_any_suction_take_what_gravity_takes() {
+    for suction_mm in [0.0, 1e-310, 1e-300, 1e-200, 1e-20] {
+        let soil = GreenAmpt {
+            conductivity_mm_h: 10.0,
+            suction_mm,
+            moisture_deficit: 0.3,
+        };
+        for state in [0.0, 1e-3, 1.0, 1e12] {
+            for hours in [0.0, 1e-300, 1.0, 1e9] {
+                let (value, truth) = (soil.flooded_from_mm(state, hours), state + 10.0 * hours);
+                assert!(
+                    (value - truth).abs() <= 1e-12 * truth + 1e-18,
+                    "{suction_mm} {state} {hours}: {value}"
+                );
+            }
+        }
+    }
+}

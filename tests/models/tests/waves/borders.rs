@@ -251,3 +251,21 @@ proptest! {
         prop_assert!(field.heights().iter().zip(&depths).all(|(u, h)| u.is_finite() && (*h > 0.0 || *u == 0.0)));
     }
 }
+
+#[test]
+fn a_depth_too_small_to_count_is_dry_and_takes_its_water_along() {
+    let settings = WaveSettings {
+        cells_x: 8,
+        cells_z: 8,
+        cell_m: 10.0,
+        speed_m_s: 100.0,
+        ..WaveSettings::default()
+    };
+    let mut field = WaveField::new(&settings).expect("valid");
+    field.set_state(&[0.5; 64], &[]).expect("valid");
+    let mut depths = [500.0; 64];
+    depths[9] = 1e-45;
+    let lost = field.set_depths(&depths).expect("shallow");
+    assert!((lost - 50.0).abs() < 1e-9, "{lost}");
+    assert_eq!(field.heights()[9], 0.0);
+}
