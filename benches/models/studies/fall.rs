@@ -6,6 +6,7 @@ use glam::DVec3;
 use rain_bench::study::{Study, Variant};
 use rain_core::rainfall::{Fall, WindResponse, drag_stiffness, fall_f32, quadratic_speed_after_f32, relax_f32};
 use rain_reference::fall as reference;
+use rain_reference::fall_speed::measured;
 
 /// Every study of this file.
 pub fn studies() -> Vec<Study> {
@@ -19,7 +20,7 @@ const HEIGHTS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 30.0];
 fn falls() -> Vec<[f64; 3]> {
     DIAMETERS
         .iter()
-        .flat_map(|&d| HEIGHTS.map(|z| [reference::measured_speed(d), d, z]))
+        .flat_map(|&d| HEIGHTS.map(|z| [measured(d), d, z]))
         .collect()
 }
 
@@ -44,7 +45,7 @@ fn integrated(dt: f64) -> impl Fn([f64; 3]) -> f64 {
 fn over_height() -> Study {
     let truth: Vec<f64> = DIAMETERS
         .iter()
-        .flat_map(|&d| reference::speeds_at(d, reference::measured_speed(d), &HEIGHTS, 1e-3))
+        .flat_map(|&d| reference::speeds_at(d, measured(d), &HEIGHTS, 1e-3))
         .collect();
     let mut variants = vec![
         fall_variant("c(D), Halley on z(t)", &truth, |[terminal, d, z]| {

@@ -1,4 +1,5 @@
-//! Other ways to solve the storage equation, kept for comparison. The default is exact: [`CanopyStore`](super::CanopyStore).
+//! Other ways to solve the storage equation, kept for comparison. The default is exact:
+//! [`CanopyStore`](super::CanopyStore).
 
 use super::store::LEAST_RAIN_MM_H;
 use crate::error::clamped;
@@ -10,8 +11,8 @@ const MAX_EXPONENT: f64 = 700.0;
 /// Stored depth after `dt_s` by first-order splitting: the exact step without evaporation, then C ← max(0, C − E dt).
 ///
 /// `capacity_mm` S > 0 and `stored_mm` C in [0, S] in mm, `rain_mm_h` (intercepted) and `evaporation_mm_h` in mm/h.
-/// Bad numbers count as 0. Units: mm. Error: 3.1e-3 S at dt = 0.05 t_sat, 1.1e-3 at 0.02, 2.6e-4 at 0.005 (R = 10, S = 0.6,
-/// E = 0.5): first order, its budget closes.
+/// Bad numbers count as 0. Units: mm. Error: 3.1e-3 S at dt = 0.05 t_sat, 1.1e-3 at 0.02, 2.6e-4 at 0.005 (R = 10, S =
+/// 0.6, E = 0.5): first order, its budget closes.
 #[must_use]
 pub fn stored_by_splitting(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, evaporation_mm_h: f64, dt_s: f64) -> f64 {
     let Some(case) = Case::new(capacity_mm, stored_mm, rain_mm_h, evaporation_mm_h, dt_s) else {
@@ -26,10 +27,11 @@ pub fn stored_by_splitting(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, eva
 /// Stored depth after `dt_s` by Lambert's W: y = y_e (1 + W₀(x₀ e^(x₀ − R t/(2 S y_e)))), x₀ = y₀/y_e − 1.
 ///
 /// Arguments, units and clamps as [`stored_by_splitting`]. Above exponents of 700 it uses W₀(e^z) ≈ the root of
-/// w + ln w = z; rain below 1e-9 mm/h counts as none. Source: physics of [`CanopyStore`](super::CanopyStore) in closed form.
-/// Error: 1e-13 S up to E = 5 R; beyond, 1 + W₀ cancels and the error grows as (E/R)² to 2e-5 S at E = 2e5 R, from where
-/// splitting is nearer and is used. The change over a short step is a difference of two such values, and times cannot be
-/// asked for.
+/// w + ln w = z; rain below 1e-9 mm/h counts as none. Source: physics of [`CanopyStore`](super::CanopyStore) in closed
+/// form.
+/// Error: 1e-13 S up to E = 5 R; beyond, 1 + W₀ cancels and the error grows as (E/R)² to 2e-5 S at E = 2e5 R, from
+/// where splitting is nearer and is used. The change over a short step is a difference of two such values, and times
+/// cannot be asked for.
 #[must_use]
 pub fn stored_by_lambert_w(capacity_mm: f64, stored_mm: f64, rain_mm_h: f64, evaporation_mm_h: f64, dt_s: f64) -> f64 {
     let Some(case) = Case::new(capacity_mm, stored_mm, rain_mm_h, evaporation_mm_h, dt_s) else {

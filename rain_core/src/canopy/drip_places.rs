@@ -12,7 +12,8 @@ pub const RADIAL_DISTANCES_M: [f64; 4] = [0.4, 1.0, 1.5, 2.0];
 
 /// Share of the drip at each distance, one row per thickness. Each row sums to 1.
 ///
-/// Source: Nanko et al. 2011, in Weber et al. 2016, table 2: transplanted trees under an indoor rain simulator, no wind.
+/// Source: Nanko et al. 2011, in Weber et al. 2016, table 2: transplanted trees under an indoor rain simulator, no
+/// wind.
 pub const RADIAL_SHARES: [[f64; 4]; 4] = [
     [0.24, 0.22, 0.28, 0.26],
     [0.21, 0.19, 0.30, 0.30],

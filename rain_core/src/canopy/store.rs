@@ -164,7 +164,8 @@ impl CanopyStore {
         [self.stored, self.carry]
     }
 
-    /// q = 1 − √(1 − C/S): share of the intercepted rain that leaves the crown. Units: none, [0, 1]; 1 without capacity.
+    /// q = 1 − √(1 − C/S): share of the intercepted rain that leaves the crown. Units: none, [0, 1]; 1 without
+    /// capacity.
     #[must_use]
     pub fn drained_fraction(&self) -> f64 {
         if self.capacity_mm < LEAST_CAPACITY_MM {

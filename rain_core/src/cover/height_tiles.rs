@@ -1,7 +1,8 @@
 //! World-anchored tiles of the highest occluder along the rain.
 //!
 //! The projected plane is cut into cells that stay in their place in the world, 64 × 64 to a tile. Tiles are keyed by
-//! integers and held in key order: precision does not fall off with distance, and no result depends on an order of hashing.
+//! integers and held in key order: precision does not fall off with distance, and no result depends on an order of
+//! hashing.
 
 use super::lookup::OPEN_SKY;
 use core::cell::Cell;

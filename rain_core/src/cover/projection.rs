@@ -60,7 +60,8 @@ impl FallSlope {
     /// The slope of a rain given by classes: `speeds_m_s` (fall speed of each, m/s) and `flux` (any unit, ≥ 0).
     ///
     /// # Errors
-    /// When the slices are empty or differ in length, a value is not finite, no flux is above 0, or as in [`Self::new`].
+    /// When the slices are empty or differ in length, a value is not finite, no flux is above 0, or as in
+    /// [`Self::new`].
     pub fn from_classes(wind_m_s: DVec2, speeds_m_s: &[f64], flux: &[f64]) -> Result<Self, ConfigError> {
         if flux.is_empty() {
             return Err(ConfigError::Empty { field: "flux" });

@@ -115,8 +115,8 @@ impl FixedTriangle {
         y.clamp(a.min(b).min(c), a.max(b).max(c))
     }
 
-    /// Calls `visit(column, row, w)` for the cells of a grid whose centre lies inside or on an edge, row by row; `w` are
-    /// twice the areas between the centre and the three edges. `first` is the centre of cell (0, 0).
+    /// Calls `visit(column, row, w)` for the cells of a grid whose centre lies inside or on an edge, row by row; `w`
+    /// are twice the areas between the centre and the three edges. `first` is the centre of cell (0, 0).
     pub(crate) fn for_each_centre(
         &self,
         first: [i64; 2],

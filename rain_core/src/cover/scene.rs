@@ -21,7 +21,8 @@ pub struct CoverSettings {
     pub cell_m: f64,
     /// Height of the reference plane. Units: m. Domain: [−1e7, 1e7]. Default: 0.
     pub reference_height_m: f64,
-    /// Most tiles (64 × 64 cells, 16 KiB each) that the map may hold. Default: 16384, 256 MiB: 4 km² at the default cell.
+    /// Most tiles (64 × 64 cells, 16 KiB each) that the map may hold. Default: 16384, 256 MiB: 4 km² at the default
+    /// cell.
     pub max_tiles: usize,
 }
 

@@ -15,7 +15,8 @@ const FOG_ROWS: [[f64; 2]; 4] = [[0.0, 0.0], [0.33, 0.15], [0.66, 0.4], [1.0, 1.
 
 /// Fog amount of a relative intensity: linear through 0, 0.33, 0.66, 1 → 0, 0.15, 0.4, 1. Units: none.
 ///
-/// `relative_intensity`: clamped to [0, 1], NaN counts as 0 ([`crate::weather::relative_intensity`]). Digest E76, table T3.
+/// `relative_intensity`: clamped to [0, 1], NaN counts as 0 ([`crate::weather::relative_intensity`]). Digest E76, table
+/// T3.
 ///
 /// Error: rounding; a look.
 #[must_use]
@@ -99,7 +100,8 @@ pub struct ToyShopGlow {
 }
 
 impl ToyShopGlow {
-    /// `bright`: luminance after exposure that gets no fog, in [1e-3, 1e6] (source: 10); `greatest_fog`: P.z, in [0, 1];
+    /// `bright`: luminance after exposure that gets no fog, in [1e-3, 1e6] (source: 10); `greatest_fog`: P.z, in
+    /// [0, 1];
     /// `glow_scale`: P.w, in [0, 1e3].
     ///
     /// # Errors

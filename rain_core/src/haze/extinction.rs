@@ -2,13 +2,14 @@
 //!
 //! # Accuracy
 //! Drops much larger than the wavelength take out twice their cross-section, half of it by diffraction into less than
-//! 0.1°, which a camera cannot tell from the direct beam: what a picture loses lies between Q = 1 and 2. Measured visibility in
-//! rain also contains mist.
+//! 0.1°, which a camera cannot tell from the direct beam: what a picture loses lies between Q = 1 and 2. Measured
+//! visibility in rain also contains mist.
 
 use crate::ops;
 use crate::rainfall::Spectrum;
 
-/// Extinction over cross-section of large drops, Q. Units: none. A choice between 1 and 2 for pictures; 2 is the beam's.
+/// Extinction over cross-section of large drops, Q. Units: none. A choice between 1 and 2 for pictures; 2 is the
+/// beam's.
 pub const EXTINCTION_EFFICIENCY: f64 = 2.0;
 
 /// Longest optical depth that is looked at: e^(−700) is the smallest ordinary double.
@@ -16,8 +17,8 @@ const MAX_DEPTH: f64 = 700.0;
 
 /// Extinction coefficient of rain σ = Q σ_geo, all diameters. Units: 1/m.
 ///
-/// `efficiency`: Q, clamped to [0, 4], NaN counts as [`EXTINCTION_EFFICIENCY`]. Uses the spectrum's own N₀, so drops and
-/// fog share one. Marshall–Palmer with N₀ = 8000: 0.36466 R^0.63 per km.
+/// `efficiency`: Q, clamped to [0, 4], NaN counts as [`EXTINCTION_EFFICIENCY`]. Uses the spectrum's own N₀, so drops
+/// and fog share one. Marshall–Palmer with N₀ = 8000: 0.36466 R^0.63 per km.
 ///
 /// Error: 1e-10 relative against the sum over diameters.
 #[must_use]

@@ -1,8 +1,8 @@
 //! Haze that thins out with height.
 //!
 //! # Accuracy
-//! An exponential profile over level ground, uniform along it. Nothing is marched: the optical depth of any straight way is a
-//! closed form.
+//! An exponential profile over level ground, uniform along it. Nothing is marched: the optical depth of any straight
+//! way is a closed form.
 
 use crate::error::{ConfigError, in_range};
 use crate::ops;
@@ -41,8 +41,8 @@ pub struct HeightHaze {
 }
 
 impl HeightHaze {
-    /// `base_per_m`: σ₀, 1/m, in [0, 100]; `base_height_m`: y₀, m, in ± 1e6; `scale_height_m`: H, m, in [1e-3, 1e9] (1e9:
-    /// practically homogeneous).
+    /// `base_per_m`: σ₀, 1/m, in [0, 100]; `base_height_m`: y₀, m, in ± 1e6; `scale_height_m`: H, m, in [1e-3, 1e9]
+    /// (1e9: practically homogeneous).
     ///
     /// # Errors
     /// When a value is not finite or outside its range.

@@ -1,7 +1,7 @@
 //! One optical depth, shared between drops that are drawn and haze.
 //!
-//! For a Poisson field the mean transmittance of drawn drops is exactly exp(−∫ weight · extinction ds), whether the weight
-//! fades opacity or thins drops. What the drawn drops do not take out, the fog does, so that
+//! For a Poisson field the mean transmittance of drawn drops is exactly exp(−∫ weight · extinction ds), whether the
+//! weight fades opacity or thins drops. What the drawn drops do not take out, the fog does, so that
 //! E[T_drops] · T_fog = exp(−Q σ_geo s) for every way, every range and every fade: no setting of the drawn range may
 //! change the mean of a picture. Weights go by distance from the eye, so turning the camera changes nothing.
 //!
@@ -124,7 +124,8 @@ pub fn mid_depth_m(way_m: f64, range_m: f64) -> f64 {
 
 /// Mean weight of one card that stands for `cell_m` of depth around `distance_m`: [G_m(r + a/2) − G_m(r − a/2)]/a.
 ///
-/// Adjacent cards add up to G_m. `cell_m`: a, m, clamped to [1e-3, 1e3], NaN counts as 1e-3; others as in [`mid_weight`].
+/// Adjacent cards add up to G_m. `cell_m`: a, m, clamped to [1e-3, 1e3], NaN counts as 1e-3; others as in
+/// [`mid_weight`].
 /// Units: none, in [0, 1].
 ///
 /// Error: 1e-12.
@@ -265,7 +266,8 @@ const TABLE: usize = 64;
 /// Optical depth of the fog as a table over distance in single precision, for drops whose range depends on their own
 /// diameter. 264 bytes; nothing is allocated.
 ///
-/// Entries stand at s = 36 t² m, t even in [0, 1]; beyond 36 m all weights have ended, and the depth is a straight line.
+/// Entries stand at s = 36 t² m, t even in [0, 1]; beyond 36 m all weights have ended, and the depth is a straight
+/// line.
 ///
 /// Error: optical depth within σ_geo · 0.02 m of the integral over diameters (2e-5 at 25 mm/h); 0.003 m without cards.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Visibility: how far something dark can be told from the horizon.
 //!
 //! # Accuracy
-//! Koschmieder's law for a black object against the horizon in uniform haze. Observed visibility in rain scatters by a factor
-//! of two (mist, wind, lighting).
+//! Koschmieder's law for a black object against the horizon in uniform haze. Observed visibility in rain scatters by a
+//! factor of two (mist, wind, lighting).
 
 use super::extinction::transmittance;
 use crate::ops;
@@ -16,7 +16,8 @@ pub const MAX_VISIBILITY_M: f64 = 1e9;
 
 /// Distance at which contrast has fallen to a threshold, −ln(threshold)/σ. Units: m, in [0, 1e9].
 ///
-/// `extinction_per_m`: σ, 1/m; negative, 0 or NaN: 1e9. `threshold`: contrast, clamped to [1e-6, 1]; NaN counts as 0.02.
+/// `extinction_per_m`: σ, 1/m; negative, 0 or NaN: 1e9. `threshold`: contrast, clamped to [1e-6, 1]; NaN counts as
+/// 0.02.
 ///
 /// Error: rounding.
 #[must_use]

@@ -6,8 +6,8 @@
 //! # Accuracy
 //! Against rays traced through the outline of Beard & Chuang: the table of [`crate::optics`], relative L1 over the disc
 //! 0.06 at 4 mm where a sphere is off by 0.3. Worst where much is reflected totally on the flat base: looking
-//! half a radian down through 4 mm, 0.3 with three rays, 0.75 with two. The plane of incidence is taken to be the same at
-//! both surfaces. Real drops oscillate.
+//! half a radian down through 4 mm, 0.3 with three rays, 0.75 with two. The plane of incidence is taken to be the same
+//! at both surfaces. Real drops oscillate.
 
 use glam::Vec3;
 
@@ -86,7 +86,8 @@ impl DropBody {
 
     /// Outward unit normal where a line of sight enters; `None` where it misses.
     ///
-    /// `through`: any point of the line, from the middle of the widest circle, in its radii, its parts clamped to ± 100;
+    /// `through`: any point of the line, from the middle of the widest circle, in its radii, its parts clamped to ±
+    /// 100;
     /// `view`: unit vector from the eye to the drop, else `None`.
     ///
     /// Error: 1e-6 against a search along the line, more than 0.1 (cosine of incidence) from the rim.
@@ -115,8 +116,8 @@ impl DropBody {
     ///
     /// `view`: unit vector from the eye to the point; `normal`: outward unit normal there, which also says where on the
     /// body the point lies; one turned away from the eye counts as one across the view. `index`: n, clamped to [1, 10],
-    /// NaN counts as 1. Vectors must be unit and finite, else `None`. The weights of all orders add up to 1. Two rays take
-    /// the place of [`super::drop_rays_f32`]; a third brings most of what inner reflections add.
+    /// NaN counts as 1. Vectors must be unit and finite, else `None`. The weights of all orders add up to 1. Two rays
+    /// take the place of [`super::drop_rays_f32`]; a third brings most of what inner reflections add.
     ///
     /// Error: against rays traced through the same body, of three rays, directions 1e-5 and weights 6e-3.
     #[must_use]

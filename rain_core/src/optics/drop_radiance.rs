@@ -67,7 +67,8 @@ pub struct DropRays {
 /// `view`: unit vector from the eye to the point; `normal`: outward unit normal there (a sphere's, or that of
 /// [`crate::rainfall::DropOutline`]); the refracted ray leaves as from the sphere with this normal, which is poor above
 /// 2 mm: [`super::DropBody::rays`] takes the true far side. A normal turned away
-/// from the eye counts as one across the view. `index` as in [`drop_light`]. Vectors must be unit and finite; else `None`.
+/// from the eye counts as one across the view. `index` as in [`drop_light`]. Vectors must be unit and finite; else
+/// `None`.
 ///
 /// Error: directions 1e-5 and weights 5e-6 against traced rays through a sphere, up to 0.99 of the radius. For falling
 /// drops see [`crate::optics`].

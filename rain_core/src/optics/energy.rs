@@ -1,8 +1,8 @@
 //! Where the light that hits a drop goes.
 //!
 //! # Accuracy
-//! Geometric optics of a loss-free sphere, both polarisations tracked. Water absorbs less than 1e-3 over a drop's diameter in
-//! the visible. Flattened drops share out differently by some per cent of each order.
+//! Geometric optics of a loss-free sphere, both polarisations tracked. Water absorbs less than 1e-3 over a drop's
+//! diameter in the visible. Flattened drops share out differently by some per cent of each order.
 
 use super::fresnel::{fresnel_polarised, normal_reflectance};
 use super::refraction::index;

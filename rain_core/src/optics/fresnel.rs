@@ -1,7 +1,8 @@
 //! Fresnel reflection at a smooth water surface.
 //!
 //! # Accuracy
-//! Smooth, loss-free, non-magnetic media of real index: exact. Water's index varies by 0.5 % over the visible; F₀ by 2 %.
+//! Smooth, loss-free, non-magnetic media of real index: exact. Water's index varies by 0.5 % over the visible; F₀ by 2
+//! %.
 
 use crate::ops;
 use crate::quadrature::GaussLegendre;
@@ -28,9 +29,9 @@ impl Polarised {
 
 /// Reflectance for unpolarised light: ½((γ−c)/(γ+c))² (1 + ((c(γ+c)−1)/(c(γ−c)+1))²), γ = √(n² − 1 + c²).
 ///
-/// `cos_incidence`: c, clamped to [0, 1], NaN counts as 1; `relative_index`: n beyond the surface over n before it (water
-/// from air 1.333, air from water 1/1.333), clamped to [0.1, 10], NaN counts as 1. Where n² − 1 + c² < 0: 1, total
-/// reflection. Units: none, in [0, 1].
+/// `cos_incidence`: c, clamped to [0, 1], NaN counts as 1; `relative_index`: n beyond the surface over n before it
+/// (water from air 1.333, air from water 1/1.333), clamped to [0.1, 10], NaN counts as 1. Where n² − 1 + c² < 0: 1,
+/// total reflection. Units: none, in [0, 1].
 ///
 /// Error: 1e-12 against Snell's law and Fresnel's equations by angles.
 #[must_use]

@@ -1,8 +1,8 @@
 //! Light at a water surface and in a drop: Fresnel, refraction, energy split, radiance.
 //!
 //! # Accuracy of what a drop shows
-//! Against rays traced through the outline of Beard & Chuang with all inner reflections, relative L1 of the radiance over
-//! the disc of drops of 1, 2, 4 mm, looking level or half a radian up:
+//! Against rays traced through the outline of Beard & Chuang with all inner reflections, relative L1 of the radiance
+//! over the disc of drops of 1, 2, 4 mm, looking level or half a radian up:
 //!
 //! | | one radiance all around | overcast sky over dark ground | lamp of 0.15 rad |
 //! |---|---|---|---|
@@ -12,8 +12,8 @@
 //! | [`DropBody::rays`], 2 rays | 0.06, 0.06, 0.08 | 0.06, 0.05, 0.06 | 0.02, 0.08, 0.1 |
 //! | the same, 3 rays | 0.012, 0.012, 0.02 | 0.02, 0.03, 0.06 | 0.02, 0.08, 0.1 |
 //!
-//! Looking half a radian down at dark ground, a quarter of what small drops show is sky by one inner reflection: two rays
-//! miss 0.26, 0.28, 0.75 under the overcast sky, three 0.04, 0.07, 0.3. The cheap tier's mean over
+//! Looking half a radian down at dark ground, a quarter of what small drops show is sky by one inner reflection: two
+//! rays miss 0.26, 0.28, 0.75 under the overcast sky, three 0.04, 0.07, 0.3. The cheap tier's mean over
 //! the disc (for drops smaller than a pixel) is within 0.08 looking level or up, and up to 0.57 too dark looking down.
 
 mod drop_body;

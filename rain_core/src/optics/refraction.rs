@@ -1,8 +1,8 @@
 //! Refraction through a sphere: what a drop shows of its surroundings, and where rainbows stand.
 //!
 //! # Accuracy
-//! Geometric optics of a sphere: right for drops above 0.1 mm (the wavelength is 0.5 µm) as far as they are round. A 4 mm drop
-//! is 20 % flatter: its view is wider across than up.
+//! Geometric optics of a sphere: right for drops above 0.1 mm (the wavelength is 0.5 µm) as far as they are round. A 4
+//! mm drop is 20 % flatter: its view is wider across than up.
 
 use core::f64::consts::{PI, TAU};
 
@@ -26,8 +26,8 @@ fn half_sine(s: f64, n: f64) -> f64 {
 
 /// Deviation of a ray that goes straight through a sphere, δ = 2(asin s − asin(s/n)). Units: rad.
 ///
-/// `impact`: s, distance from the axis in radii, clamped to [0, 1], NaN counts as 0; `index`: n, clamped to [1, 10], NaN
-/// counts as 1. The image is inverted: the ray turns towards the axis.
+/// `impact`: s, distance from the axis in radii, clamped to [0, 1], NaN counts as 0; `index`: n, clamped to [1, 10],
+/// NaN counts as 1. The image is inverted: the ray turns towards the axis.
 ///
 /// Error: 2e-14 rad against the two arcs and against traced rays.
 #[must_use]
@@ -62,7 +62,8 @@ pub fn field_of_view_rad(index: f64) -> f64 {
 /// The impact parameter whose ray is deviated by δ: s = n sin h/√((n − 1)² + 4n sin²(h/2)), h = δ/2. Units: none, in
 /// [0, 1].
 ///
-/// `deviation_rad`: clamped to [0, δ(1)], NaN counts as 0; `index` as in [`deviation_rad`]. For n = 1 nothing is deviated: 0.
+/// `deviation_rad`: clamped to [0, δ(1)], NaN counts as 0; `index` as in [`deviation_rad`]. For n = 1 nothing is
+/// deviated: 0.
 ///
 /// Error: round trip 1e-13 below s = 0.99; δ turns vertical at the rim, where s is sharper than δ.
 #[must_use]
@@ -103,8 +104,8 @@ pub struct Bow {
     pub angle_rad: f64,
 }
 
-/// The rainbow of rays with `reflections` ≥ 1 inner reflections (1: primary, 2: secondary): the stationary deviation, at
-/// cos²i = (n² − 1)/(k(k + 2)). `None` where there is none (k = 0, or n ≥ k + 1).
+/// The rainbow of rays with `reflections` ≥ 1 inner reflections (1: primary, 2: secondary): the stationary deviation,
+/// at cos²i = (n² − 1)/(k(k + 2)). `None` where there is none (k = 0, or n ≥ k + 1).
 ///
 /// `index` as in [`deviation_rad`]; `reflections` above 100 count as 100.
 ///

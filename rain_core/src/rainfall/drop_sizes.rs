@@ -210,9 +210,9 @@ impl DropSizes {
         })
     }
 
-    /// Sizes with the published N₀, which carry up to 19 % more or 28 % less than `intensity_mm_h` from 1 to 100 mm/h, and
-    /// less than half of it in the lightest drizzle. A gamma distribution has no published rate to miss and is that of
-    /// [`DropSizes::new`].
+    /// Sizes with the published N₀, which carry up to 19 % more or 28 % less than `intensity_mm_h` from 1 to 100 mm/h,
+    /// and less than half of it in the lightest drizzle. A gamma distribution has no published rate to miss and is that
+    /// of [`DropSizes::new`].
     ///
     /// # Errors
     /// When `intensity_mm_h` is outside [0, 500] or not finite.

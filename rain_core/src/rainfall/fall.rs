@@ -76,7 +76,8 @@ impl Fall {
         Self::new(terminal_velocity(d), drag_stiffness(d))
     }
 
-    /// Quadratic drag, c = 1, the form of most particle systems: a terminal speed (m/s, in [1e-6, 1000]) is all it needs.
+    /// Quadratic drag, c = 1, the form of most particle systems: a terminal speed (m/s, in [1e-6, 1000]) is all it
+    /// needs.
     ///
     /// # Errors
     /// When the speed is not finite or outside its range.

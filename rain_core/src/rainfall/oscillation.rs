@@ -39,7 +39,8 @@ pub fn mode_decay_s(mode: u32, diameter_mm: f64) -> f64 {
 
 /// Amplitude A₂ at which wakes keep a raindrop swinging, in radii. Units: none, in [0, 0.15].
 ///
-/// 0 up to 1 mm, linear to 0.15 at 5 mm, then held: **a choice** inside the range 0.1–0.2 that is reported for big drops.
+/// 0 up to 1 mm, linear to 0.15 at 5 mm, then held: **a choice** inside the range 0.1–0.2 that is reported for big
+/// drops.
 /// `diameter_mm`: mm; NaN counts as 0.
 ///
 /// Error: none against its definition; nature scatters by a factor of two.
@@ -54,8 +55,8 @@ pub fn sustained_amplitude(diameter_mm: f64) -> f64 {
 
 /// Phase after `time_s` at `frequency_hz` from `start_turns`, in turns of [0, 1).
 ///
-/// All in double precision: at 344 Hz the phase is right to 4e-9 turns after 24 h, where single precision is off by more
-/// than a turn. What is not finite gives 0.
+/// All in double precision: at 344 Hz the phase is right to 4e-9 turns after 24 h, where single precision is off by
+/// more than a turn. What is not finite gives 0.
 ///
 /// Error: 2⁻⁵² of the turns made.
 #[must_use]
@@ -70,7 +71,8 @@ fn radius_m(diameter_mm: f64) -> f64 {
 
 /// Modes 2 and 3 of one drop: phases instead of time, so that nothing wears out in long runs.
 ///
-/// Error: the shape keeps the drop's volume to 1e-9 against a sum over 800 angles; the phase 1e-7 turns after 86 400 steps.
+/// Error: the shape keeps the drop's volume to 1e-9 against a sum over 800 angles; the phase 1e-7 turns after 86 400
+/// steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillation {
     diameter_mm: f64,
@@ -81,8 +83,8 @@ pub struct Oscillation {
 }
 
 impl Oscillation {
-    /// A drop (mm, clamped to [1e-3, 1e3]) that swings as wakes keep it: A₂ by [`sustained_amplitude`], A₃ = 0, starting
-    /// at phase `start_turns` (any finite number of turns; else 0).
+    /// A drop (mm, clamped to [1e-3, 1e3]) that swings as wakes keep it: A₂ by [`sustained_amplitude`], A₃ = 0,
+    /// starting at phase `start_turns` (any finite number of turns; else 0).
     #[must_use]
     pub fn sustained(diameter_mm: f64, start_turns: f64) -> Self {
         Self::released(diameter_mm, start_turns, [sustained_amplitude(diameter_mm), 0.0])

@@ -39,8 +39,9 @@ pub(super) fn carrying(
 }
 
 impl Spectrum {
-    /// The spectrum with N₀ as published: with measured fall speeds it carries up to 19 % more or 28 % less than its rate
-    /// from 1 to 100 mm/h, 40 % less in a thunderstorm of 500 mm/h, and less than half of it in the lightest drizzle.
+    /// The spectrum with N₀ as published: with measured fall speeds it carries up to 19 % more or 28 % less than its
+    /// rate from 1 to 100 mm/h, 40 % less in a thunderstorm of 500 mm/h, and less than half of it in the lightest
+    /// drizzle.
     ///
     /// Dry (0 mm/h) has no drops.
     ///

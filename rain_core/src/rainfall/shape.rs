@@ -23,7 +23,8 @@ pub const OUTLINE_TERMS: usize = 11;
 /// `diameter_mm`: equivalent diameter, mm, clamped to [0, 7]; NaN counts as 0. Andsager, Beard & Laird 1999, fit to
 /// Beard & Chuang 1987; the polynomial exceeds 1 below 0.453 mm.
 ///
-/// Error: rounding; against the outline's own ratio at most 0.0035. Single drops scatter by a few per cent (oscillation).
+/// Error: rounding; against the outline's own ratio at most 0.0035. Single drops scatter by a few per cent
+/// (oscillation).
 #[must_use]
 pub fn axis_ratio(diameter_mm: f64) -> f64 {
     let d = if diameter_mm > 0.0 {

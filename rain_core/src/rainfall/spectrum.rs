@@ -180,8 +180,8 @@ impl Spectrum {
         core::f64::consts::FRAC_PI_4 * 1e-6 * self.moment(2, a_mm, b_mm)
     }
 
-    /// Flux-weighted mean of 1/v over the drops of 0.2 to 6 mm: how far wind carries rain sideways per metre of fall and
-    /// m/s of wind. Units: s/m. Also where it is dry.
+    /// Flux-weighted mean of 1/v over the drops of 0.2 to 6 mm: how far wind carries rain sideways per metre of fall
+    /// and m/s of wind. Units: s/m. Also where it is dry.
     ///
     /// Error: 1e-7 relative.
     #[must_use]

@@ -5,8 +5,8 @@
 //! (π/4)(D f/z)². Source: Garg & Nayar 2007.
 //!
 //! # Accuracy
-//! The drop is a disc of its equivalent diameter: real ones are up to 15 % wider and 30 % lower. [`streak_opacity`] is exact
-//! for that disc; [`ScreenStreak`] spreads its sum evenly over a rectangle, ends included.
+//! The drop is a disc of its equivalent diameter: real ones are up to 15 % wider and 30 % lower. [`streak_opacity`] is
+//! exact for that disc; [`ScreenStreak`] spreads its sum evenly over a rectangle, ends included.
 
 use core::f32::consts::FRAC_PI_4;
 
@@ -52,10 +52,10 @@ pub fn streak_peak_opacity(diameter_mm: f64, path_m: f64) -> f64 {
 
 /// Opacity at a point beside a streak: share of the exposure in which the disc covers it. Units: none, in [0, 1].
 ///
-/// `across_m`: distance from the axis; `along_m`: from the disc's centre at the start of the exposure, positive along the
-/// motion; `diameter_m` ≥ 0; `path_m` ≥ 0, 0 = a drop at rest. NaN anywhere, or no diameter: 0.
-/// α = |[y − h, y + h] ∩ [0, wT]|/(w T) with half a chord h = √(D² − 4x²)/2: mid-streak √(D² − 4x²)/(w T), ends taper over
-/// D. ∫α dA = π D²/4 exactly.
+/// `across_m`: distance from the axis; `along_m`: from the disc's centre at the start of the exposure, positive along
+/// the motion; `diameter_m` ≥ 0; `path_m` ≥ 0, 0 = a drop at rest. NaN anywhere, or no diameter: 0.
+/// α = |[y − h, y + h] ∩ [0, wT]|/(w T) with half a chord h = √(D² − 4x²)/2: mid-streak √(D² − 4x²)/(w T), ends taper
+/// over D. ∫α dA = π D²/4 exactly.
 ///
 /// Error: 1e-15 against the definition; against 512 samples of the disc's way 1/512, which is theirs.
 #[must_use]
@@ -82,8 +82,8 @@ pub fn streak_opacity(across_m: f64, along_m: f64, diameter_m: f64, path_m: f64)
 
 /// [`streak_opacity`] in single precision; lengths in any common unit (pixels, say).
 ///
-/// Error: 1e-5 of the peak opacity plus 5e-7 · max(|along|, D)/path against the double form, more than 1e-4 of the radius
-/// inside the rim (a root rises vertically there).
+/// Error: 1e-5 of the peak opacity plus 5e-7 · max(|along|, D)/path against the double form, more than 1e-4 of the
+/// radius inside the rim (a root rises vertically there).
 #[must_use]
 #[inline]
 pub fn streak_opacity_f32(across: f32, along: f32, diameter: f32, path: f32) -> f32 {
@@ -129,12 +129,13 @@ pub struct ScreenStreak {
 impl ScreenStreak {
     /// A drop that goes from `tail_m` to `head_m` (camera space, looking along −z; m) during the exposure.
     ///
-    /// `diameter_m` ≥ 0; `focal_px`: focal length in pixels, > 0; `near_m`: near plane, > 0. What lies before the near plane
-    /// is cut off before the division by depth, and its share of the exposure with it. The drop's size is that at the
-    /// geometric mean of both depths, which makes the sum exact: the mean of 1/z² over the way is 1/(z₁ z₂).
+    /// `diameter_m` ≥ 0; `focal_px`: focal length in pixels, > 0; `near_m`: near plane, > 0. What lies before the near
+    /// plane is cut off before the division by depth, and its share of the exposure with it. The drop's size is that at
+    /// the geometric mean of both depths, which makes the sum exact: the mean of 1/z² over the way is 1/(z₁ z₂).
     /// `None` when all of it is before the near plane or a value, of the result too, is out of range or not finite.
     ///
-    /// Error: opacity × length × width is (π/4)(D f)²/(z₁ z₂) × share of the exposure within 3e-6 of the exact integral.
+    /// Error: opacity × length × width is (π/4)(D f)²/(z₁ z₂) × share of the exposure within 3e-6 of the exact
+    /// integral.
     #[must_use]
     pub fn project(head_m: Vec3, tail_m: Vec3, diameter_m: f32, focal_px: f32, near_m: f32) -> Option<Self> {
         let valid = head_m.is_finite() && tail_m.is_finite() && diameter_m.is_finite() && focal_px.is_finite();
@@ -186,8 +187,8 @@ impl ScreenStreak {
     }
 }
 
-/// The part of the way from `tail` to `head` (camera space, looking along −z) behind the near plane, and its share of the
-/// exposure. `None` when nothing is left or `near_m` is not positive.
+/// The part of the way from `tail` to `head` (camera space, looking along −z) behind the near plane, and its share of
+/// the exposure. `None` when nothing is left or `near_m` is not positive.
 ///
 /// Error: 2e-7 of the segment against the double form.
 #[must_use]
@@ -215,8 +216,8 @@ pub fn clip_to_near(head: Vec3, tail: Vec3, near_m: f32) -> Option<(Vec3, Vec3, 
 
 /// Diameter of the circle of confusion of a thin lens, A f |1/z − 1/z_f|. Units: px.
 ///
-/// `aperture_m`: diameter of the opening, m ≥ 0; `focal_px`: px ≥ 0; `depth_m`, `focus_m`: m > 0. Out of range or NaN: 0.
-/// At most 1e6.
+/// `aperture_m`: diameter of the opening, m ≥ 0; `focal_px`: px ≥ 0; `depth_m`, `focus_m`: m > 0. Out of range or NaN:
+/// 0. At most 1e6.
 ///
 /// Error: 1e-15 relative to the larger of the two terms.
 #[must_use]

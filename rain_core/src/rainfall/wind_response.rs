@@ -52,8 +52,8 @@ fn positive(x: f64) -> f64 {
 
 /// A drop's (or a whole size class's) velocity and path in the wind, without its fall.
 ///
-/// Error: 1e-13 of the largest speed (velocity) and of speed × time (path) against the integrated law; cutting an interval
-/// changes nothing beyond that.
+/// Error: 1e-13 of the largest speed (velocity) and of speed × time (path) against the integrated law; cutting an
+/// interval changes nothing beyond that.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WindResponse {
     /// Of the drop, from the wind alone. Units: m/s.
@@ -74,8 +74,8 @@ impl WindResponse {
 
     /// Advances by `dt_s` in a wind that goes linearly from `start_m_s` to `end_m_s`.
     ///
-    /// `terminal_m_s`: of the drop, m/s ≥ 0; 0 follows at once. A `dt_s` that is not positive and finite changes nothing,
-    /// nor do winds that are not finite. Allocates nothing.
+    /// `terminal_m_s`: of the drop, m/s ≥ 0; 0 follows at once. A `dt_s` that is not positive and finite changes
+    /// nothing, nor do winds that are not finite. Allocates nothing.
     pub fn advance(&mut self, terminal_m_s: f64, start_m_s: DVec3, end_m_s: DVec3, dt_s: f64) {
         if !(dt_s > 0.0 && dt_s.is_finite() && start_m_s.is_finite() && end_m_s.is_finite()) {
             return;

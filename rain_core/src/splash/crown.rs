@@ -63,8 +63,8 @@ pub fn crown_opacity(diameter_mm: f64, time_s: f64) -> f64 {
 
 /// Height of the crown's rim `time_s` after the impact: a parabola over its life. Units: m.
 ///
-/// Its peak is D · min(2.5, 0.6 √(excess − 1)), excess as [`splash_excess`]; 0 below the threshold and outside its life.
-/// Arguments as [`crown_radius_m`]. Source: choice: 1 mm drops 0.6 mm, 4 mm drops 9 mm on dry ground.
+/// Its peak is D · min(2.5, 0.6 √(excess − 1)), excess as [`splash_excess`]; 0 below the threshold and outside its
+/// life. Arguments as [`crown_radius_m`]. Source: choice: 1 mm drops 0.6 mm, 4 mm drops 9 mm on dry ground.
 #[must_use]
 pub fn crown_height_m(diameter_mm: f64, speed_m_s: f64, film_mm: f64, time_s: f64) -> f64 {
     let d = clamped(diameter_mm, 0.0, LARGEST_MM) * 1e-3;

@@ -49,7 +49,8 @@ impl ImpactFlux {
         let normal = normal.try_normalize().unwrap_or(DVec3::Y);
         let from = clamped(min_mm, 0.0, END_MM);
         let to = clamped(max_mm, 0.0, END_MM).min(from + END_DECAYS / spectrum.slope_per_mm);
-        // Where the approach changes sign, and where the fall speed's fit has its corner: the integrand is smooth between.
+        // Where the approach changes sign, and where the fall speed's fit has its corner: the integrand is smooth
+        // between.
         let approach = |d: f64| terminal_velocity(d) * normal.y - wind.dot(normal);
         let corner = MAX_FITTED_DIAMETER_MM.clamp(from, to.max(from));
         let mut flux = Self::default();
@@ -68,7 +69,8 @@ impl ImpactFlux {
         Self::new(spectrum, min_mm, max_mm, DVec3::Y, DVec3::ZERO)
     }
 
-    /// Adds what falls between two diameters, by panels short against the decay length and the bends of the fall speed's fit.
+    /// Adds what falls between two diameters, by panels short against the decay length and the bends of the fall
+    /// speed's fit.
     fn add_between(&mut self, spectrum: &Spectrum, a: f64, b: f64, wind: DVec3, approach: impl Fn(f64) -> f64) {
         if b <= a || approach(0.5 * (a + b)) <= 0.0 {
             return;

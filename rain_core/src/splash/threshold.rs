@@ -35,7 +35,8 @@ fn film_share(diameter_mm: f64, film_mm: f64) -> f64 {
 ///
 /// Dry: 57.7 (Mundo et al. 1995). Film of δ = 0.08 to 1.2 diameters: (2100 + 5880 δ^1.44)^(5/8) (Cossali et al. 1997);
 /// thinner films linear between both in K^1.6, deeper water as δ = 1.2 (choices). `diameter_mm` held in [0, 100],
-/// `film_mm` in [0, 1e6]; what is not a number counts as 0. Error: rounding; smooth walls, rough ground splashes earlier.
+/// `film_mm` in [0, 1e6]; what is not a number counts as 0. Error: rounding; smooth walls, rough ground splashes
+/// earlier.
 #[must_use]
 pub fn splash_threshold_k(diameter_mm: f64, film_mm: f64) -> f64 {
     // x^(5/8) by roots: a tenth of a power's cost.

@@ -110,9 +110,9 @@ impl GreenAmpt {
         self.flooded_from_mm(0.0, time_h)
     }
 
-    /// What has infiltrated after `time_h` more under standing water, from the state `infiltrated_mm`. Units: mm, hours.
-    /// Whoever has less water than this standing limits it. Negative values and NaN count as 0, states above 1e12 mm as
-    /// that, times above 1e9 h as 1e9 h. Error: 1e-12 relative.
+    /// What has infiltrated after `time_h` more under standing water, from the state `infiltrated_mm`. Units: mm,
+    /// hours. Whoever has less water than this standing limits it. Negative values and NaN count as 0, states above
+    /// 1e12 mm as that, times above 1e9 h as 1e9 h. Error: 1e-12 relative.
     #[must_use]
     pub fn flooded_from_mm(&self, infiltrated_mm: f64, time_h: f64) -> f64 {
         let infiltrated_mm = clamped(infiltrated_mm, 0.0, 1e12);

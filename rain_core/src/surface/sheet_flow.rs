@@ -7,9 +7,9 @@
 //!
 //! # Accuracy
 //! No pressure and no inertia: the depth's own slope must be small against the bed's. On the planes of the check
-//! table the steady depth of the full (local inertial) equations differs by less than 1 %. On a plane askew to its edges
-//! (5 % fall, 4 m) rise and steady depth along the fall line are within 2.2 % (L1) of the two-dimensional equations on 80²
-//! cells, which is that grid's own error. Rain splash, rills and
+//! table the steady depth of the full (local inertial) equations differs by less than 1 %. On a plane askew to its
+//! edges (5 % fall, 4 m) rise and steady depth along the fall line are within 2.2 % (L1) of the two-dimensional
+//! equations on 80² cells, which is that grid's own error. Rain splash, rills and
 //! the change from laminar to turbulent flow on one plane are left out.
 
 use crate::constants::{GRAVITY, M_S_PER_MM_H, WATER_KINEMATIC_VISCOSITY};

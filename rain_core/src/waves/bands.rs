@@ -1,10 +1,11 @@
 //! Several steps in one pass over memory, by several threads, in place.
 //!
-//! Two levels are stored; a step writes the next one over the older. Step s of a row may run as soon as step s − 1 of the
-//! next row has: a front of [`FUSED`] steps moves down the field, a row apart, while its rows are still in the cache.
-//! For threads the rows are cut into bands. Within its band every thread runs a trapezoid, each step a row shorter at an
-//! inner edge than the one before, so that nothing of the neighbour is needed; then the wedges around the inner edges are
-//! filled. Every cell is computed once, by the same operations, whatever the cut: results do not depend on it.
+//! Two levels are stored; a step writes the next one over the older. Step s of a row may run as soon as step s − 1 of
+//! the next row has: a front of [`FUSED`] steps moves down the field, a row apart, while its rows are still in the
+//! cache. For threads the rows are cut into bands. Within its band every thread runs a trapezoid, each step a row
+//! shorter at an inner edge than the one before, so that nothing of the neighbour is needed; then the wedges around the
+//! inner edges are filled. Every cell is computed once, by the same operations, whatever the cut: results do not depend
+//! on it.
 
 use rayon::prelude::*;
 

@@ -5,8 +5,8 @@
 pub(super) struct Bed {
     /// h/h_max of each cell; 0 is dry.
     pub depth: Vec<f32>,
-    /// ½(h_i + h_east)/h_max, 0 where either is dry: c² of the face to the next cell in the row. The last one of a row is
-    /// the face around the border when the field is periodic, else 0.
+    /// ½(h_i + h_east)/h_max, 0 where either is dry: c² of the face to the next cell in the row. The last one of a row
+    /// is the face around the border when the field is periodic, else 0.
     pub east: Vec<f32>,
     /// The same towards the next row.
     pub south: Vec<f32>,

@@ -10,12 +10,12 @@ pub enum Border {
     Fixed,
     /// What leaves on one side enters on the other: a tile.
     Periodic,
-    /// Waves leave: first-order Mur 1981 on the outermost cells, and a sponge of that many cells in front of it (0: none),
-    /// whose damping rises quadratically.
+    /// Waves leave: first-order Mur 1981 on the outermost cells, and a sponge of that many cells in front of it (0:
+    /// none), whose damping rises quadratically.
     ///
-    /// Mur alone sends back 0.2 % at normal incidence, (1 − cos θ)/(1 + cos θ) at the angle θ. A sponge of 12 cells takes
-    /// what a drop of two cells' width leaves of that in a channel to 0.4, one of 20 cells to 0.2. It has to be as wide
-    /// as the waves are long: of waves longer than that a sponge sends back more than Mur alone.
+    /// Mur alone sends back 0.2 % at normal incidence, (1 − cos θ)/(1 + cos θ) at the angle θ. A sponge of 12 cells
+    /// takes what a drop of two cells' width leaves of that in a channel to 0.4, one of 20 cells to 0.2. It has to be
+    /// as wide as the waves are long: of waves longer than that a sponge sends back more than Mur alone.
     Open {
         /// Width of the sponge on each side. Units: cells. Domain: [0, 64], below half the field.
         sponge_cells: u32,

@@ -1,8 +1,8 @@
 //! How fast waves run and how fast they die, by wavelength and depth.
 //!
-//! ω² = (g k + σk³/ρ) tanh(k h) for small waves on still water of constant depth (Lamb 1932, §§ 228, 266, 348), with water
-//! at 20 °C. Wave number k in rad/m, domain [0, 1e7]; depth h in m, domain [0, 1e4]. Whatever lies outside is clamped,
-//! NaN counts as 0.
+//! ω² = (g k + σk³/ρ) tanh(k h) for small waves on still water of constant depth (Lamb 1932, §§ 228, 266, 348), with
+//! water at 20 °C. Wave number k in rad/m, domain [0, 1e7]; depth h in m, domain [0, 1e4]. Whatever lies outside is
+//! clamped, NaN counts as 0.
 //!
 //! # Accuracy
 //! Clean water: films of oil or soap multiply the damping of short waves. Linear: steep waves run faster by (k a)²/2.
@@ -100,7 +100,8 @@ pub fn wave_frequency_f32(wave_number: f32, depth_m: f32) -> f32 {
     clamped_f32(wave_number, MAX_WAVE_NUMBER) * phase_speed_f32(wave_number, depth_m)
 }
 
-/// Group speed dω/dk = ½ c [(1 + 3B)/(1 + B) + 2kh/sinh 2kh], B = σk²/(ρg). Units: m/s; k in rad/m, h in m, both clamped.
+/// Group speed dω/dk = ½ c [(1 + 3B)/(1 + B) + 2kh/sinh 2kh], B = σk²/(ρg). Units: m/s; k in rad/m, h in m, both
+/// clamped.
 ///
 /// Error: relative 1e-8 against differences of ω.
 #[must_use]

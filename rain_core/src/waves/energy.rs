@@ -113,8 +113,8 @@ impl WaveField {
         0.5 * motion + 0.5 * f64::from(rules.c2) * potential
     }
 
-    /// Corner terms of the nine-point sum whose far cell is the mirror image behind a wall: pairs along the border, each
-    /// once from either end.
+    /// Corner terms of the nine-point sum whose far cell is the mirror image behind a wall: pairs along the border,
+    /// each once from either end.
     fn wall_corners(&self) -> f64 {
         if self.rules.border == Border::Periodic {
             return 0.0;
@@ -149,8 +149,8 @@ impl WaveField {
                 .all(|(now, before)| now.abs() <= height_m && (now - before).abs() <= 2.0 * height_m)
     }
 
-    /// Stills a calm field (see [`WaveField::is_calm`]): steps then cost nothing until the next source. Returns whether it
-    /// is still, with the water in m³ that has to go to the level.
+    /// Stills a calm field (see [`WaveField::is_calm`]): steps then cost nothing until the next source. Returns whether
+    /// it is still, with the water in m³ that has to go to the level.
     pub fn settle(&mut self, height_m: f32) -> Option<f64> {
         if !self.is_calm(height_m) {
             return None;

@@ -27,8 +27,8 @@ const DRIFT_STEPS: u32 = 256;
 /// Stable for every damping and every depth up to that of `speed_m_s`, since C² λ_max < 4; without damping the energy
 /// ½Σ(u⁺−u)² − ½C²Σu⁺Lu is conserved.
 ///
-/// Error: ≤ 1e-5 of the amplitude against the exact solution of the scheme after 500 steps; second order in the cell against
-/// the wave equation: at C = 0.7 waves of 8 cells are 1.3 % too slow along the axes and exact on the diagonal.
+/// Error: ≤ 1e-5 of the amplitude against the exact solution of the scheme after 500 steps; second order in the cell
+/// against the wave equation: at C = 0.7 waves of 8 cells are 1.3 % too slow along the axes and exact on the diagonal.
 #[derive(Debug, Clone)]
 pub struct WaveField {
     pub(super) settings: WaveSettings,
@@ -229,7 +229,8 @@ impl WaveField {
                 kick += f64::from(scale * velocity);
             }
         }
-        // L moves no water, so both levels have one sum but for the velocities. The border lets water through otherwise.
+        // L moves no water, so both levels have one sum but for the velocities. The border lets water through
+        // otherwise.
         self.sum_now = super::energy::sum(&self.now);
         self.sum_before = self.sum_now - kick;
         self.still = false;
@@ -261,8 +262,8 @@ impl WaveField {
 
     /// Lets time pass; whole sub-steps are done, the rest is kept for the next call. Returns the number of steps.
     ///
-    /// `elapsed_ns`: ns, 0 is nothing. Of more than a second, the rest is dropped: a game that stood still does not have to
-    /// be caught up with.
+    /// `elapsed_ns`: ns, 0 is nothing. Of more than a second, the rest is dropped: a game that stood still does not
+    /// have to be caught up with.
     pub fn advance(&mut self, elapsed_ns: u64) -> u32 {
         self.left_ns += elapsed_ns.min(MAX_ADVANCE_NS);
         let steps = self.left_ns / self.step_ns;

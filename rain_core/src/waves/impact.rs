@@ -73,8 +73,8 @@ impl WaveField {
     /// Drops fall one by one: a pressure impulse J = m v e^(−r²/2s²)/(2πs²) changes the surface's velocity by
     /// (h/ρ)∇²J and moves no water in sum; the drop's own volume raises it by V e^(−r²/2s²)/(2πs²).
     ///
-    /// Returns whether the drop met water: not outside the field, on a dry cell or on a fixed border. What of the shape falls
-    /// on such cells goes to the others. Both sums are met to rounding: the discrete Laplacian's own sum is
+    /// Returns whether the drop met water: not outside the field, on a dry cell or on a fixed border. What of the shape
+    /// falls on such cells goes to the others. Both sums are met to rounding: the discrete Laplacian's own sum is
     /// taken out, in proportion to the Gaussian, and volume over the cell's area is the discrete sum of the bump.
     ///
     /// # Errors

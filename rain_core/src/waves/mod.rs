@@ -8,9 +8,9 @@
 //! Directions: `x` runs along a row, `z` from row to row; cell (i, j) has its centre at ((i + ½) dx, (j + ½) dx).
 //!
 //! # Accuracy
-//! One speed for all wavelengths: at 5 mm of water every wavelength above 17 mm runs within 2 % of √(g h), because depth
-//! and surface tension cancel; at 2 mm or 50 mm of water the error reaches 24 % at 20 mm (see [`phase_speed`]). The
-//! damping is one number where nature's depends on the wavelength. Heights are single valued and small against the
+//! One speed for all wavelengths: at 5 mm of water every wavelength above 17 mm runs within 2 % of √(g h), because
+//! depth and surface tension cancel; at 2 mm or 50 mm of water the error reaches 24 % at 20 mm (see [`phase_speed`]).
+//! The damping is one number where nature's depends on the wavelength. Heights are single valued and small against the
 //! depth: no breaking, no flow.
 
 mod bands;

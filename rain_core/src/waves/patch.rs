@@ -57,8 +57,8 @@ impl WaveField {
         self.accepts(i, j).then_some(j * self.rules.nx + i)
     }
 
-    /// The index of the cell that holds a point in m, around the border of a tile; `None` outside, on dry cells and on a
-    /// fixed border.
+    /// The index of the cell that holds a point in m, around the border of a tile; `None` outside, on dry cells and on
+    /// a fixed border.
     pub(super) fn cell_of(&self, x_m: f64, z_m: f64) -> Option<usize> {
         let wraps = self.settings.border == Border::Periodic;
         let cell = |at: f64, cells: usize| {

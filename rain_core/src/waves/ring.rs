@@ -8,10 +8,10 @@
 //! A pressure impulse Δu_t = A∇²e^(−r²/2s²) makes −A/(cs) times the same with F′ for F and F for H.
 //!
 //! # Accuracy
-//! One wave speed and one damping. From r = 5 s on and within −3 s to 5 s of the front the error against the integral is
-//! below 1 % of the crest, below 0.2 % from r = 10 s on for rings of drops; without the second term it is 1 % there. Inside
-//! r = s the value at r = s is used. Surface tension, which makes short waves run ahead, is left out: 5 % of the crest on
-//! 5 mm of water.
+//! One wave speed and one damping. From r = 5 s on and within −3 s to 5 s of the front the error against the integral
+//! is below 1 % of the crest, below 0.2 % from r = 10 s on for rings of drops; without the second term it is 1 % there.
+//! Inside r = s the value at r = s is used. Surface tension, which makes short waves run ahead, is left out: 5 % of the
+//! crest on 5 mm of water.
 
 use super::impact::DropImpact;
 use crate::constants::WATER_DENSITY;
@@ -42,8 +42,8 @@ impl Ring {
     /// The ring of an impact on water of a depth, with the width of [`DropImpact::width_m`].
     ///
     /// # Errors
-    /// [`ConfigError::OutOfRange`]: a field of `impact` outside its domain, `depth_m` not in [1e-4, 100] m, `damping_per_s`
-    /// (k_d) not in [0, 1e4] 1/s.
+    /// [`ConfigError::OutOfRange`]: a field of `impact` outside its domain, `depth_m` not in [1e-4, 100] m,
+    /// `damping_per_s` (k_d) not in [0, 1e4] 1/s.
     pub fn new(impact: &DropImpact, depth_m: f64, damping_per_s: f64) -> Result<Self, ConfigError> {
         impact.check()?;
         in_range("depth_m", depth_m, 1e-4, 100.0, "1e-4 to 100 m")?;
@@ -114,7 +114,8 @@ impl RingTable {
         Self { rows, steepest }
     }
 
-    /// H, F, F′ and F″ at x = (r − ct)/s; 0 ahead of x = 7, two terms of the asymptotic series behind x = −16. NaN gives 0.
+    /// H, F, F′ and F″ at x = (r − ct)/s; 0 ahead of x = 7, two terms of the asymptotic series behind x = −16. NaN
+    /// gives 0.
     ///
     /// Error: absolute 3e-6 against the integrals, where F reaches 0.49.
     #[must_use]
@@ -171,8 +172,8 @@ impl RingTable {
         (amplitude * shape, amplitude * (along / s - spread / r))
     }
 
-    /// Age beyond which no part of a ring is steeper than `slope`. Units: s, within [0, 1e3]; a slope that is not positive
-    /// gives 1e3.
+    /// Age beyond which no part of a ring is steeper than `slope`. Units: s, within [0, 1e3]; a slope that is not
+    /// positive gives 1e3.
     #[must_use]
     pub fn lifetime_s(&self, ring: &Ring, slope: f32) -> f32 {
         let [f1, f2] = self.steepest;

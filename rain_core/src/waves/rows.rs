@@ -1,15 +1,15 @@
 //! The step of one row: u⁺ = u + (1−a)/(1+a) (u − u⁻) + C²/(1+a) L u, written over u⁻.
 //!
 //! This is physics' u⁺ = (2u − (1−a)u⁻ + C²Lu)/(1+a) with the differences taken first: in single precision a level
-//! surface then stays level, and what is left of the rounding is that of the small terms. With g = (1−a)/(1+a) the other
-//! factor is 1/(1+a) = ½(1+g), so one number a cell describes any damping.
+//! surface then stays level, and what is left of the rounding is that of the small terms. With g = (1−a)/(1+a) the
+//! other factor is 1/(1+a) = ½(1+g), so one number a cell describes any damping.
 
 use super::bed::Bed;
 use super::border::Border;
 use super::stencil::Stencil;
 
-/// Heights below this are 0 after the last step of a pass: a quiet pond must not run into denormal numbers, and in the few
-/// steps of a pass none falls from here to 1e-38. Units: m.
+/// Heights below this are 0 after the last step of a pass: a quiet pond must not run into denormal numbers, and in the
+/// few steps of a pass none falls from here to 1e-38. Units: m.
 const TINY: f32 = 1e-20;
 
 #[inline(always)]

@@ -16,8 +16,8 @@ pub struct WaveSettings {
     /// Speed of the fastest wave in the field, √(g h) of its deepest water. Units: m/s. Domain: [1e-3, 100].
     /// Default: 0.22143, that of 5 mm.
     pub speed_m_s: f64,
-    /// Damping k_d of the velocity, twice the decay rate of the amplitude. Units: 1/s. Domain: [0, 1e4]. Default: 0.6, a
-    /// choice near the bulk and bottom friction of waves of 2–5 cm on 5 mm of water.
+    /// Damping k_d of the velocity, twice the decay rate of the amplitude. Units: 1/s. Domain: [0, 1e4]. Default: 0.6,
+    /// a choice near the bulk and bottom friction of waves of 2–5 cm on 5 mm of water.
     pub damping_per_s: f64,
     /// Sum over the neighbours. Default: five points.
     pub stencil: Stencil,

@@ -1,7 +1,8 @@
 //! How rough rain makes water whose rings are too small to be seen one by one.
 //!
 //! Rings of independent impacts add up: by Campbell's theorem ⟨|∇u|²⟩ = ∫ Φ(D) ∫∫ |∇u_D|² d²r dt dD, with Φ impacts per
-//! m², s and mm. In Fourier space the inner integrals of the damped wave equation are elementary; with γ = k_d/2 and c² = g h
+//! m², s and mm. In Fourier space the inner integrals of the damped wave equation are elementary; with γ = k_d/2 and c²
+//! = g h
 //!
 //! ∫∫|∇u|² d²r dt = (1/2π) [ (h m v/ρ)²/(4γc²s⁶) − V h m v/(2ρc²s⁴) + V² (1/(8γs⁴) + γ/(2c²s²)) ].
 //!
@@ -18,8 +19,8 @@ const LEAST_DEPTH_M: f64 = 1e-5;
 
 /// ∫∫ |∇u|² d²r dt of one impact. Units: m² s.
 ///
-/// `width_m` is s, in m, no less than 1e-6; `depth_m` in m, clamped to [1e-5, 100]; `damping_per_s` is k_d in 1/s, clamped to
-/// [1e-3, 1e4]; NaN counts as the least. An impact outside its domain gives 0.
+/// `width_m` is s, in m, no less than 1e-6; `depth_m` in m, clamped to [1e-5, 100]; `damping_per_s` is k_d in 1/s,
+/// clamped to [1e-3, 1e4]; NaN counts as the least. An impact outside its domain gives 0.
 ///
 /// Error: relative 1e-6 against the double integral, summed.
 #[must_use]
@@ -44,8 +45,8 @@ pub fn impact_slope_variance(impact: &DropImpact, width_m: f64, depth_m: f64, da
 
 /// ⟨|∇u|²⟩ of a water surface under rain, the sum of both directions. Units: none.
 ///
-/// Each drop falls at its terminal speed and acts with its own width, [`DropImpact::width_m`] with `cell_m`: that of a wave
-/// field the far water has to match, or 0. `depth_m` and `damping_per_s` as in [`impact_slope_variance`].
+/// Each drop falls at its terminal speed and acts with its own width, [`DropImpact::width_m`] with `cell_m`: that of a
+/// wave field the far water has to match, or 0. `depth_m` and `damping_per_s` as in [`impact_slope_variance`].
 ///
 /// Error: relative 5e-4 against a sum over 100 000 diameters; model: see the module.
 #[must_use]

@@ -27,9 +27,9 @@ const SHORT: f64 = 0.05;
 /// Mean over the segment from A to B of e^(−r²/2s²): √(π/2)(s/ℓ) e^(−d²/2s²) [erf(ξ/(s√2)) − erf((ξ−ℓ)/(s√2))], with ξ
 /// along and d across. Units: none; all lengths in m.
 ///
-/// Additive: ℓ·w of a way is the sum of its parts'. ℓ = 0 is the Gaussian; up to 0.05 s the mean is taken by the series in
-/// ℓ, since the difference of two nearly equal erf cancels. A width that is not positive or a coordinate that is not finite
-/// gives 0.
+/// Additive: ℓ·w of a way is the sum of its parts'. ℓ = 0 is the Gaussian; up to 0.05 s the mean is taken by the series
+/// in ℓ, since the difference of two nearly equal erf cancels. A width that is not positive or a coordinate that is not
+/// finite gives 0.
 ///
 /// Error: absolute 1e-13.
 #[must_use]
@@ -192,11 +192,11 @@ fn segment(from: [f32; 2], to: [f32; 2], width: f32) -> Option<Segment> {
 /// What a moving source does to the water, in sum over its way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Push {
-    /// Raises the surface by this much where it stands still; on a way of length ℓ by amplitude per metre · ℓ · w. Units: m.
-    /// Changes the volume.
+    /// Raises the surface by this much where it stands still; on a way of length ℓ by amplitude per metre · ℓ · w.
+    /// Units: m. Changes the volume.
     Height(f32),
-    /// Presses with a force over a time, as weight or tyre pressure does: Δu_t = (h/ρ)∇²J with J = impulse · w/(2πs²). A
-    /// load F at speed v leaves F/v on each metre. Units: N s. Moves water, but makes none.
+    /// Presses with a force over a time, as weight or tyre pressure does: Δu_t = (h/ρ)∇²J with J = impulse · w/(2πs²).
+    /// A load F at speed v leaves F/v on each metre. Units: N s. Moves water, but makes none.
     Impulse(f32),
 }
 
@@ -233,8 +233,8 @@ impl SweptSource {
 impl WaveField {
     /// Adds the source of one frame. Two halves of the way with half the push each do the same as the whole.
     ///
-    /// Dry cells, fixed borders and what lies outside are left out; an impulse still moves no water in sum. Costs some ten
-    /// ns for each cell within 5 s of the way, twice that by shores and borders.
+    /// Dry cells, fixed borders and what lies outside are left out; an impulse still moves no water in sum. Costs some
+    /// ten ns for each cell within 5 s of the way, twice that by shores and borders.
     ///
     /// # Errors
     /// [`ConfigError::OutOfRange`] for a field of `source` outside its domain or not finite; then nothing has changed.
@@ -277,8 +277,9 @@ impl WaveField {
         if weight_sum <= 0.0 {
             return Ok(());
         }
-        // What the force moves in sum is taken back: where no border or shore cuts it that is the little beyond its reach,
-        // the same for all cells; else it is much, and follows the weight so that no step is left around the source.
+        // What the force moves in sum is taken back: where no border or shore cuts it that is the little beyond its
+        // reach, the same for all cells; else it is much, and follows the weight so that no step is left around the
+        // source.
         let balance = force_sum / weight_sum;
         let (even, shaped) = if balance.abs() < SMALL_BALANCE {
             ((back * force_sum / count) as f32, None)

@@ -268,7 +268,8 @@ fn every_class_agrees_with_the_slow_integration() {
             column.advance(&p, forcing(rain, evaporation), dt).expect("valid");
             y = slow(&p, rain, evaporation, y, dt, 1e-3);
             for (a, b) in amounts(&column).into_iter().zip(y) {
-                // A kink inside a slow step costs it up to rate·step: 300 mm/h · 1e-4 s = 8e-6 mm, seen as 1e-6 of 1 mm.
+                // A kink inside a slow step costs it up to rate·step: 300 mm/h · 1e-4 s = 8e-6 mm, seen as 1e-6 of 1
+                // mm.
                 assert!(
                     (a - b).abs() <= 1e-6 * b.abs() + 1e-6,
                     "{class:?}: {:?} {y:?}",

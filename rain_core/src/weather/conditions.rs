@@ -24,7 +24,8 @@ pub struct WeatherConditions {
     pub relative_humidity: f64,
     /// Air pressure. Units: Pa. Domain: [30000, 110000]. Default: 101325.
     pub pressure_pa: f64,
-    /// Net radiation that the ground receives, negative on clear nights. Units: W/m². Domain: [−300, 1400]. Default: 150.
+    /// Net radiation that the ground receives, negative on clear nights. Units: W/m². Domain: [−300, 1400]. Default:
+    /// 150.
     pub net_radiation_w_m2: f64,
     /// Family of drop sizes. Default: Marshall–Palmer.
     pub distribution: Distribution,

@@ -50,11 +50,12 @@ pub fn drying_time_s(film_mm: f64, evaporation_mm_h: f64) -> Option<f64> {
 
 /// Evaporation from a surface that is wet everywhere. Units: mm/h. Source: Penman 1948.
 ///
-/// E = (Δ Rₙ/λ + γ Eₐ)/(Δ + γ) with Eₐ of [`dalton_evaporation_mm_h`], Δ = e_s·17.67·243.5/(T + 243.5)², λ = 2.501e6 − 2361 T J/kg, γ = 1005 p/(0.622 λ).
+/// E = (Δ Rₙ/λ + γ Eₐ)/(Δ + γ) with Eₐ of [`dalton_evaporation_mm_h`], Δ = e_s·17.67·243.5/(T + 243.5)², λ = 2.501e6 −
+/// 2361 T J/kg, γ = 1005 p/(0.622 λ).
 ///
 /// **Negative values are dew** and are returned as such. [`super::SurfaceColumn`] wets nothing by dew: its caller
-/// clamps at 0, so that a humid night after a dry day leaves a scene dry. Error: 3e-9 relative (or of 1e-3 mm/h) against
-/// the paper's units with Δ by differences.
+/// clamps at 0, so that a humid night after a dry day leaves a scene dry. Error: 3e-9 relative (or of 1e-3 mm/h)
+/// against the paper's units with Δ by differences.
 ///
 /// The conditions must be valid ([`WeatherConditions::validated`]); then the result is finite.
 ///

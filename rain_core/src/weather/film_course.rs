@@ -1,8 +1,8 @@
 //! The film under constant supply and drain, for any time at once: dw/dt = s − κ w^(5/3).
 //!
-//! With w = e u³, e = (|s|/κ)^(3/5) and T = |s| t/e the film runs along F(u) = ∫ 3u²/(1 − u⁵) du: F(u) = F(u₀) + T under
-//! supply (s > 0), and along −F(−u) downwards to 0 under loss (s < 0). Partial fractions over the fifth roots of one
-//! give F in logarithms and arc tangents; below |u| = 1/4 its series does not cancel.
+//! With w = e u³, e = (|s|/κ)^(3/5) and T = |s| t/e the film runs along F(u) = ∫ 3u²/(1 − u⁵) du: F(u) = F(u₀) + T
+//! under supply (s > 0), and along −F(−u) downwards to 0 under loss (s < 0). Partial fractions over the fifth roots of
+//! one give F in logarithms and arc tangents; below |u| = 1/4 its series does not cancel.
 
 use crate::ops;
 

@@ -1,11 +1,12 @@
 //! The film above the texture: dw/dt = supply − infiltration(t) − κ w^(5/3).
 //!
 //! # Method and error
-//! Dormand & Prince 1980, orders 5(4) with the error of the lower order held below [`TOLERANCE`]·max(w, 1e-3 mm) per step;
-//! the higher order is kept. The right side falls with w (its slope is −5/3 κ w^(2/3) ≤ 0), so two solutions never
-//! move apart: local errors add at most, and the error after n steps is below n·tolerance. Steps shrink by themselves
-//! at w → 0, where w^(5/3) is not smooth. Over long times without soil the closed form of `film_course` is taken. Pure drain is exact, w = (w₀^(−2/3) + ⅔ κ t)^(−3/2). Close to equilibrium
-//! the deviation δ decays as e^(−λt); δ ≤ 6e-7 w there, and what is left out is of the order (δ/w)².
+//! Dormand & Prince 1980, orders 5(4) with the error of the lower order held below [`TOLERANCE`]·max(w, 1e-3 mm) per
+//! step; the higher order is kept. The right side falls with w (its slope is −5/3 κ w^(2/3) ≤ 0), so two solutions
+//! never move apart: local errors add at most, and the error after n steps is below n·tolerance. Steps shrink by
+//! themselves at w → 0, where w^(5/3) is not smooth. Over long times without soil the closed form of `film_course` is
+//! taken. Pure drain is exact, w = (w₀^(−2/3) + ⅔ κ t)^(−3/2). Close to equilibrium the deviation δ decays as e^(−λt);
+//! δ ≤ 6e-7 w there, and what is left out is of the order (δ/w)².
 
 use super::film_course::{towards_equilibrium, towards_nothing};
 use super::horton::HortonCurve;

@@ -4,9 +4,9 @@ use crate::error::clamped;
 
 /// Mass that each particle must stand for so that no more than `budget` are alive at once. Units: kg.
 ///
-/// `flow_kg_s` in kg/s, held in [0, 1e6]; `life_s` in s, held in [0, 1e4]; `budget` in particles, at least 1; `least_kg`:
-/// mass below which a particle is not split further, held in [1e-12, 1e3] (one drop, for instance). What is not a
-/// number counts as the lower end. Error: rounding.
+/// `flow_kg_s` in kg/s, held in [0, 1e6]; `life_s` in s, held in [0, 1e4]; `budget` in particles, at least 1;
+/// `least_kg`: mass below which a particle is not split further, held in [1e-12, 1e3] (one drop, for instance). What is
+/// not a number counts as the lower end. Error: rounding.
 #[must_use]
 pub fn spray_parcel_kg(flow_kg_s: f64, life_s: f64, budget: u32, least_kg: f64) -> f64 {
     let alive = clamped(flow_kg_s, 0.0, 1e6) * clamped(life_s, 0.0, 1e4);

@@ -39,7 +39,8 @@ impl SprayMechanism {
 
     /// Speeds at which water begins to fly and at which all of it does. Units: m/s.
     ///
-    /// Spray 48 to 64 km/h, the least speeds at which it was measured (Pilkington 1990); splash 10 to 30 km/h, a choice.
+    /// Spray 48 to 64 km/h, the least speeds at which it was measured (Pilkington 1990); splash 10 to 30 km/h, a
+    /// choice.
     #[must_use]
     pub fn onset_m_s(self) -> (f64, f64) {
         match self {
@@ -85,9 +86,9 @@ pub struct SprayDroplet {
 
 /// Drop number `index` of a mechanism: the same integers give the same drop.
 ///
-/// Adhesion leaves the rear arc, 20° to 100° behind the contact, tread 5° to 30°, both along the tangent at the speed of
-/// the rim, so that over the ground they have v (1 − cos θ) forwards and v sin θ upwards; 5° of scatter sideways. Bow
-/// and side leave the contact's edges at 0.5 to 1 v, 10° to 35° up, the bow 20° to 40° and the side 40° to 60° from
+/// Adhesion leaves the rear arc, 20° to 100° behind the contact, tread 5° to 30°, both along the tangent at the speed
+/// of the rim, so that over the ground they have v (1 − cos θ) forwards and v sin θ upwards; 5° of scatter sideways.
+/// Bow and side leave the contact's edges at 0.5 to 1 v, 10° to 35° up, the bow 20° to 40° and the side 40° to 60° from
 /// straight ahead. Diameters are drawn by volume, evenly in ln D. Backwards everything is mirrored along z.
 /// `speed_m_s` held in [−200, 200], what is not a number counts as 0. Source: choice within Weir et al. 1978's picture.
 /// Error: rounding of single precision.

@@ -17,7 +17,8 @@ pub struct Tyre {
     /// Share of the width that is grooves, K_t. Units: none. Domain: [0, 1]. Default: 0.25.
     pub groove_share: f64,
     /// Share of the tread's depth that water fills as the wheel carries it up. Units: none. Domain: [0, 1].
-    /// Default: 0.1: h_tp = 0.8 mm of a new tread. A choice: more, and the spray behind grows at the cost of bow and side.
+    /// Default: 0.1: h_tp = 0.8 mm of a new tread. A choice: more, and the spray behind grows at the cost of bow and
+    /// side.
     pub carried_share: f64,
     /// Thickest film that clings to the rubber, h_ca. Units: mm. Domain: [0, 5]. Default: 0.1.
     pub adhesion_mm: f64,

@@ -31,8 +31,8 @@ pub struct WheelWater {
 }
 
 impl WheelWater {
-    /// For a valid tyre at `speed_m_s` (either way, held at 200) on a film of `film_mm` (held in [0, 1000]). What is not a
-    /// number counts as 0.
+    /// For a valid tyre at `speed_m_s` (either way, held at 200) on a film of `film_mm` (held in [0, 1000]). What is
+    /// not a number counts as 0.
     #[must_use]
     pub fn new(tyre: &Tyre, speed_m_s: f64, film_mm: f64) -> Self {
         let film = clamped(film_mm, 0.0, DEEPEST_MM);
@@ -88,7 +88,8 @@ pub struct WheelTrail {
 }
 
 impl WheelTrail {
-    /// Of a wheel at `speed_m_s` on a film of `film_mm`; domains as [`WheelWater::new`]. A wheel at rest leaves the film.
+    /// Of a wheel at `speed_m_s` on a film of `film_mm`; domains as [`WheelWater::new`]. A wheel at rest leaves the
+    /// film.
     #[must_use]
     pub fn new(tyre: &Tyre, speed_m_s: f64, film_mm: f64) -> Self {
         let water = WheelWater::new(tyre, speed_m_s, film_mm);

@@ -8,6 +8,7 @@ use rain_core::rainfall::{
     response_time_s, slant_rad,
 };
 use rain_reference::fall as reference;
+use rain_reference::fall_speed::measured;
 
 use crate::check::Worst;
 
@@ -24,7 +25,7 @@ fn config() -> ProptestConfig {
 
 /// A drop with the measured terminal speed and a stiffness.
 fn drop_with(diameter: f64, c: f64) -> Fall {
-    Fall::new(reference::measured_speed(diameter), c).expect("valid")
+    Fall::new(measured(diameter), c).expect("valid")
 }
 
 #[test]
@@ -177,7 +178,7 @@ const FALLS: [(f64, [[f64; 2]; 5]); 5] = [
 fn falls_from_rest_match_the_published_speeds() {
     let heights = [0.5, 1.0, 2.0, 4.0, 16.0];
     for (d, rows) in FALLS {
-        let terminal = reference::measured_speed(d);
+        let terminal = measured(d);
         let integrated = reference::speeds_at(d, terminal, &heights, 1e-3);
         let fall = drop_with(d, drag_stiffness(d));
         for ((height, [slow, fast]), v) in heights.into_iter().zip(rows).zip(integrated) {
@@ -199,7 +200,7 @@ fn speed_over_height_stays_near_the_drag_of_clift_and_gauvin() {
     let heights: Vec<f64> = (1..=60).map(|i| 0.5 * f64::from(i)).collect();
     let (mut ours, mut quadratic) = (Worst::default(), Worst::default());
     for d in [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0] {
-        let terminal = reference::measured_speed(d);
+        let terminal = measured(d);
         let speeds = reference::speeds_at(d, terminal, &heights, 2e-3);
         for (height, v) in heights.iter().zip(speeds) {
             let place = || format!("{d} mm after {height} m");
@@ -223,7 +224,7 @@ fn way_to_99_percent_matches_the_published_heights() {
         (4.0, 14.68, 15.57),
         (5.0, 14.59, 16.50),
     ] {
-        let terminal = reference::measured_speed(d);
+        let terminal = measured(d);
         let plain = Fall::quadratic(terminal).expect("valid");
         assert!((plain.distance_to_99_percent_m() - quadratic).abs() < 0.011, "{d} mm");
         let slow = reference::height_to_share(d, terminal, 0.99, 1e-3);

@@ -238,7 +238,7 @@ fn diameters_speeds_and_visible_ranges_agree_on_gpu_and_cpu() {
             worst[k] = worst[k].max((f64::from(f[k]) / expected[k] - 1.0).abs());
         }
     }
-    // Vulkan lets `log` err by 3 units in the last place; e^(−2D) magnifies by at most 1/(2D), D ≥ 0.5 mm. The top class
-    // subtracts two nearly equal numbers.
+    // Vulkan lets `log` err by 3 units in the last place; e^(−2D) magnifies by at most 1/(2D), D ≥ 0.5 mm. The top
+    // class subtracts two nearly equal numbers.
     assert!(worst[0] < 1e-4 && worst[1] < 1e-4 && worst[2] < 3e-4, "{worst:?}");
 }

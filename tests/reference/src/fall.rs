@@ -8,80 +8,6 @@ const WATER: f64 = 998.2;
 const AIR: f64 = 1.2041;
 const VISCOSITY: f64 = 1.816e-5;
 
-/// Gunn & Kinzer 1949: diameter in mm, speed in m/s at 20 °C and 1013 hPa.
-pub const GUNN_KINZER: [(f64, f64); 34] = [
-    (0.1, 0.27),
-    (0.2, 0.72),
-    (0.3, 1.17),
-    (0.4, 1.62),
-    (0.5, 2.06),
-    (0.6, 2.47),
-    (0.7, 2.87),
-    (0.8, 3.27),
-    (0.9, 3.67),
-    (1.0, 4.03),
-    (1.2, 4.64),
-    (1.4, 5.17),
-    (1.6, 5.65),
-    (1.8, 6.09),
-    (2.0, 6.49),
-    (2.2, 6.90),
-    (2.4, 7.27),
-    (2.6, 7.57),
-    (2.8, 7.82),
-    (3.0, 8.06),
-    (3.2, 8.26),
-    (3.4, 8.44),
-    (3.6, 8.60),
-    (3.8, 8.72),
-    (4.0, 8.83),
-    (4.2, 8.92),
-    (4.4, 8.98),
-    (4.6, 9.03),
-    (4.8, 9.07),
-    (5.0, 9.09),
-    (5.2, 9.12),
-    (5.4, 9.14),
-    (5.6, 9.16),
-    (5.8, 9.17),
-];
-
-/// Monotone cubic (Fritsch & Carlson's harmonic slopes) through (0, 0) and the table; 9.17 above 5.8 mm. Units: m/s.
-pub fn measured_speed(diameter_mm: f64) -> f64 {
-    let points: Vec<(f64, f64)> = core::iter::once((0.0, 0.0))
-        .chain(GUNN_KINZER.iter().copied())
-        .collect();
-    let last = points.len() - 1;
-    if diameter_mm >= points[last].0 {
-        return points[last].1;
-    }
-    let width = |i: usize| points[i + 1].0 - points[i].0;
-    let secant = |i: usize| (points[i + 1].1 - points[i].1) / width(i);
-    let end = |h0: f64, h1: f64, d0: f64, d1: f64| {
-        let slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-        slope.clamp(0.0, 3.0 * d0)
-    };
-    let slope = |i: usize| {
-        if i == 0 {
-            return end(width(0), width(1), secant(0), secant(1));
-        }
-        if i == last {
-            return end(width(i - 1), width(i - 2), secant(i - 1), secant(i - 2));
-        }
-        let (w1, w2) = (2.0 * width(i) + width(i - 1), width(i) + 2.0 * width(i - 1));
-        (w1 + w2) / (w1 / secant(i - 1) + w2 / secant(i))
-    };
-    let i = (0..last)
-        .find(|&i| diameter_mm < points[i + 1].0)
-        .expect("below the last point");
-    let h = width(i);
-    let t = (diameter_mm - points[i].0) / h;
-    (1.0 + 2.0 * t) * (1.0 - t).powi(2) * points[i].1
-        + t * (1.0 - t).powi(2) * h * slope(i)
-        + t * t * (3.0 - 2.0 * t) * points[i + 1].1
-        + t * t * (t - 1.0) * h * slope(i + 1)
-}
-
 /// Drag coefficient of a sphere, Clift & Gauvin 1970.
 fn sphere_drag(re: f64) -> f64 {
     24.0 / re * (1.0 + 0.15 * re.powf(0.687)) + 0.42 / (1.0 + 42500.0 * re.powf(-1.16))
@@ -121,7 +47,8 @@ pub fn speeds_at(diameter_mm: f64, terminal: f64, heights: &[f64], dt: f64) -> V
     speeds
 }
 
-/// Fall height from rest at which [`drag_acceleration`] has brought the drop to `share` of its terminal speed. Units: m.
+/// Fall height from rest at which [`drag_acceleration`] has brought the drop to `share` of its terminal speed. Units:
+/// m.
 pub fn height_to_share(diameter_mm: f64, terminal: f64, share: f64, dt: f64) -> f64 {
     let mut state = [0.0, 0.0];
     loop {
@@ -175,14 +102,6 @@ pub fn gust_amplitude(terminal: f64, frequency: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_table_is_kept_and_the_curve_rises() {
-        for (d, v) in GUNN_KINZER {
-            assert!((measured_speed(d) - v).abs() < 1e-12, "{d}");
-        }
-        assert!((1..600).all(|i| measured_speed(f64::from(i) * 0.01) >= measured_speed(f64::from(i - 1) * 0.01)));
-    }
 
     #[test]
     fn steps_do_not_matter() {

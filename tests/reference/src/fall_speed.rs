@@ -169,3 +169,16 @@ pub fn yoshida(d: f64) -> f64 {
     }
     v
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_kept_and_the_curve_rises() {
+        for (d, v) in DIAMETERS_MM.into_iter().zip(SPEEDS_M_S) {
+            assert!((measured(d) - v).abs() < 1e-12, "{d}");
+        }
+        assert!((1..600).all(|i| measured(f64::from(i) * 0.01) >= measured(f64::from(i - 1) * 0.01)));
+    }
+}

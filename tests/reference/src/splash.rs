@@ -1,37 +1,7 @@
 //! Splash thresholds and crowns.
 
+use crate::fall_speed::measured;
 use crate::numerics::bisect;
-
-/// Fall speeds of Gunn & Kinzer 1949: D mm, v m/s.
-pub const MEASURED_SPEEDS: [(f64, f64); 13] = [
-    (0.3, 1.17),
-    (0.5, 2.06),
-    (0.6, 2.47),
-    (0.7, 2.87),
-    (0.8, 3.27),
-    (1.0, 4.03),
-    (1.2, 4.64),
-    (1.4, 5.17),
-    (1.6, 5.65),
-    (2.0, 6.49),
-    (3.0, 8.06),
-    (4.0, 8.83),
-    (5.0, 9.09),
-];
-
-/// Linear between the measured speeds.
-pub fn measured_speed(diameter: f64) -> f64 {
-    let next = MEASURED_SPEEDS
-        .iter()
-        .position(|&(d, _)| d >= diameter)
-        .expect("within the table");
-    let (d1, v1) = MEASURED_SPEEDS[next];
-    if d1 == diameter {
-        return v1;
-    }
-    let (d0, v0) = MEASURED_SPEEDS[next - 1];
-    v0 + (v1 - v0) * (diameter - d0) / (d1 - d0)
-}
 
 /// Density, dynamic viscosity and surface tension of water at 20 °C.
 const WATER: (f64, f64, f64) = (998.2, 1.002e-3, 0.0728);
@@ -61,7 +31,7 @@ pub fn cossali_ratio(diameter: f64, speed: f64, film_share: f64) -> f64 {
 
 /// The diameter at which `ratio`, growing with diameter, is 1 at the measured fall speed.
 pub fn crossing(ratio: impl Fn(f64, f64) -> f64) -> f64 {
-    bisect(0.3, 5.0, |d| ratio(d, measured_speed(d)) - 1.0)
+    bisect(0.3, 5.0, |d| ratio(d, measured(d)) - 1.0)
 }
 
 /// Yarin & Weiss 1995, in mm: D (2/(3δ))^¼ √(v t/D); D in mm, t in ms.

@@ -7,8 +7,8 @@
 /// Gravity. Units: m/s².
 const G: f64 = 9.806_65;
 
-/// A tilted plane of square cells. Uphill it ends in walls; downhill (towards greater x and y) its edges are open and the
-/// water surface goes on with the slope of the bed.
+/// A tilted plane of square cells. Uphill it ends in walls; downhill (towards greater x and y) its edges are open and
+/// the water surface goes on with the slope of the bed.
 #[derive(Debug, Clone)]
 pub struct Runoff {
     /// Cells along x and y.

@@ -106,8 +106,8 @@ pub fn swept_laplacian(point: [f64; 2], from: [f64; 2], to: [f64; 2], s: f64) ->
     })
 }
 
-/// The packet (2π)^(−½) ∫√κ e^(−κ²/2) cos(κx − π/4) dκ, its antiderivative and its first two derivatives: the power of κ
-/// goes up by one, the phase by a quarter turn. κ = q² takes the root away.
+/// The packet (2π)^(−½) ∫√κ e^(−κ²/2) cos(κx − π/4) dκ, its antiderivative and its first two derivatives: the power of
+/// κ goes up by one, the phase by a quarter turn. κ = q² takes the root away.
 pub fn packet(x: f64) -> [f64; 4] {
     let panels = 400 + (8.0 * x.abs()) as usize;
     [-1, 0, 1, 2].map(|derivative: i32| {
@@ -119,8 +119,9 @@ pub fn packet(x: f64) -> [f64; 4] {
     })
 }
 
-/// ∫∫|∇u|² d²r dt of an impact of momentum p and volume v with width s on water of depth h, damping k_d: the transform of
-/// each wave is that of a damped oscillator started with a height and a velocity; its square is summed over time and k.
+/// ∫∫|∇u|² d²r dt of an impact of momentum p and volume v with width s on water of depth h, damping k_d: the transform
+/// of each wave is that of a damped oscillator started with a height and a velocity; its square is summed over time and
+/// k.
 pub fn slope_integral(momentum: f64, volume: f64, s: f64, h: f64, k_d: f64) -> f64 {
     let (gamma, c) = (0.5 * k_d, (GRAVITY * h).sqrt());
     simpson(0.0, 7.0 / s, 400, |k| {

@@ -9,8 +9,8 @@ pub const COVER_TEXEL_M: f64 = 60.0 / 1024.0;
 /// quadrature and not by this repository's code. Units: s/m.
 pub const MEAN_INVERSE_SPEED_25_MM_H: f64 = 0.1690;
 
-/// 1/v of the drop that halves the rain at 25 mm/h: 2.0483 mm (median volume on the ground, `docs/physics.md`), 6.59 m/s
-/// between the entries of Gunn & Kinzer 1949 for 2.0 and 2.2 mm. Units: s/m.
+/// 1/v of the drop that halves the rain at 25 mm/h: 2.0483 mm (median volume on the ground, `docs/physics.md`), 6.59
+/// m/s between the entries of Gunn & Kinzer 1949 for 2.0 and 2.2 mm. Units: s/m.
 pub const MEDIAN_INVERSE_SPEED_25_MM_H: f64 = 1.0 / 6.59;
 
 /// Width of the bins along which the mask is averaged. Units: m.

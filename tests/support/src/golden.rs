@@ -19,8 +19,8 @@ pub fn likeness(a: &RgbImage, b: &RgbImage) -> f64 {
         .score
 }
 
-/// Compares `picture` with the golden of this name in `folder`; below `bound` it is written to `target/goldens/` and the
-/// test fails. With `RAIN_CREATE_GOLDENS=1` a missing golden is written instead.
+/// Compares `picture` with the golden of this name in `folder`; below `bound` it is written to `target/goldens/` and
+/// the test fails. With `RAIN_CREATE_GOLDENS=1` a missing golden is written instead.
 ///
 /// # Panics
 /// When the picture is not alike, or the golden is missing, too large or of another size.

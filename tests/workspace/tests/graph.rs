@@ -234,7 +234,8 @@ fn two_versions_would_be_seen() {
         .iter()
         .map(|package| package.name.to_string())
         .find(|name| versions_in_use(name).len() > 1);
-    // Some small crate is there twice in every graph of this size; were there none, the check above would prove nothing.
+    // Some small crate is there twice in every graph of this size; were there none, the check above would prove
+    // nothing.
     assert!(
         twice.is_some(),
         "no package has two versions: is `versions_in_use` blind?"

@@ -29,8 +29,8 @@ fn environment(d: Vec3) -> [f32; 2] {
     [sky, 0.02 + 20.0 * ((d.dot(LAMP) - 1.0) * 89.05).exp()]
 }
 
-/// One drop: where lines of sight pass it, in radii of its widest circle from that circle's middle; the same as a part of
-/// the half height and width from the middle of its picture; normals of the true outline there.
+/// One drop: where lines of sight pass it, in radii of its widest circle from that circle's middle; the same as a part
+/// of the half height and width from the middle of its picture; normals of the true outline there.
 struct Drop {
     body: DropBody,
     spheroid: DropBody,

@@ -94,8 +94,8 @@ impl Basins {
     /// are: a puddle is as good as its terrain.
     ///
     /// # Errors
-    /// When the grid is empty, its size does not fit, a height is infinite or beyond ±1e7 m, or an option is outside its
-    /// domain or off the map.
+    /// When the grid is empty, its size does not fit, a height is infinite or beyond ±1e7 m, or an option is outside
+    /// its domain or off the map.
     pub fn bake(grid: &Grid, options: &BakeOptions) -> Result<Self, ConfigError> {
         let mut holes = grid.validated()?;
         in_range("threshold_m", options.threshold_m, 0.0, 1e3, "0 to 1000 m")?;
@@ -330,8 +330,8 @@ impl Basins {
         at
     }
 
-    /// Level to which each cell fills: the ground where it stays dry, NaN in holes, infinite where water cannot leave. Units: m.
-    /// Hollows left out for being too shallow stay as they are.
+    /// Level to which each cell fills: the ground where it stays dry, NaN in holes, infinite where water cannot leave.
+    /// Units: m. Hollows left out for being too shallow stay as they are.
     ///
     /// # Errors
     /// When `heights` (as baked) has another length.

@@ -72,8 +72,8 @@ impl Curve<'_> {
         }
     }
 
-    /// Depth of water above the lowest cell. Units: m. Volumes (m³) below that of the basins inside give the sill, above
-    /// the capacity the spill level; NaN counts as none.
+    /// Depth of water above the lowest cell. Units: m. Volumes (m³) below that of the basins inside give the sill,
+    /// above the capacity the spill level; NaN counts as none.
     #[must_use]
     pub fn depth_m(&self, volume_m3: f64) -> f64 {
         self.depth_in(self.stretch_at(volume_m3), volume_m3)

@@ -25,8 +25,8 @@ pub enum Inlet {
 }
 
 impl Inlet {
-    /// Flow at a depth over the inlet. Units: m³/s (depth m). Nothing at depth 0 or below or NaN. A hole takes what comes: 0 here,
-    /// since no water stands over it.
+    /// Flow at a depth over the inlet. Units: m³/s (depth m). Nothing at depth 0 or below or NaN. A hole takes what
+    /// comes: 0 here, since no water stands over it.
     #[must_use]
     pub fn flow_m3_s(&self, depth_m: f64) -> f64 {
         match *self {

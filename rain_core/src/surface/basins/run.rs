@@ -66,9 +66,9 @@ impl BasinForcing {
 /// Error: volumes within 1e-9 of the basin's capacity against an event list and against steps of any length; inlets'
 /// flow within 3e-5 above 10 mm; the ledger closes to 1e-12 of the water that came.
 ///
-/// A step costs a search in the curve of every pool, for each event up to a hundred such, and with losses, drains or rain
-/// unlike the runoff two for each cell's height that a level passes. Steps and other changes allocate nothing after
-/// construction. A step in which nothing changes any more costs nothing.
+/// A step costs a search in the curve of every pool, for each event up to a hundred such, and with losses, drains or
+/// rain unlike the runoff two for each cell's height that a level passes. Steps and other changes allocate nothing
+/// after construction. A step in which nothing changes any more costs nothing.
 #[derive(Debug, Clone)]
 pub struct BasinRun {
     pub(super) basins: Arc<Basins>,

@@ -139,7 +139,8 @@ struct Scene<'a> {
 
 impl HeightField {
     /// Draws the default scene of a glTF or GLB file into the smallest grid around what faces up: over each cell centre
-    /// the highest opaque triangle that faces up (by its winding; a node that mirrors turns it, `doubleSided` does not).
+    /// the highest opaque triangle that faces up (by its winding; a node that mirrors turns it, `doubleSided` does
+    /// not).
     ///
     /// Buffers are those in the file, `data:` URIs, and files under `folder` (none where it is `None`). Left out are
     /// primitives whose material is alpha-masked or blended; tree crowns, which are nodes, meshes or materials with

@@ -21,8 +21,8 @@ pub enum PngProblem {
 
 impl HeightField {
     /// Reads a grey PNG: image row = z, image column = x. Black is height 0, white (65535, or 255 with 8 bits) is
-    /// `height_scale_m` (units: m, domain: ±1e7), in between linear in the stored value. Where there is an alpha channel, alpha
-    /// 0 is a hole. The first cell's corner is the origin.
+    /// `height_scale_m` (units: m, domain: ±1e7), in between linear in the stored value. Where there is an alpha
+    /// channel, alpha 0 is a hole. The first cell's corner is the origin.
     ///
     /// # Errors
     /// When the file is no PNG or broken, has colours, holds more than `limits` allow, or a number lies outside its

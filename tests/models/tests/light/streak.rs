@@ -8,7 +8,7 @@ use rain_core::rainfall::{
     ScreenStreak, circle_of_confusion_px, clip_to_near, contrast_gain, lamp_falloff_per_m2, streak_length_m,
     streak_opacity, streak_opacity_f32, streak_path_m, streak_peak_opacity, terminal_velocity, visible_range_m,
 };
-use rain_reference::fall::measured_speed;
+use rain_reference::fall_speed::measured;
 use rain_reference::light::streak as reference;
 
 use super::{NOT_NUMBERS, config};
@@ -24,7 +24,7 @@ fn lengths_and_opacities_match_the_published_values() {
         (4.0, 14.717, 1.766, 0.02718),
     ];
     for (d, video, sport, opacity) in table {
-        let v = measured_speed(d);
+        let v = measured(d);
         let path = streak_path_m(v, 1.0 / 60.0);
         assert!((path * 100.0 - video).abs() < 6e-4, "{d}: {path}");
         assert!((streak_path_m(v, 1.0 / 500.0) * 100.0 - sport).abs() < 6e-4, "{d}");

@@ -142,8 +142,8 @@ fn sheet_flow_runs_along_the_fall_line_of_a_plane_askew() {
     // From the upper walls water flows straight down; the longest way ends at the foot of the steeper side.
     let path = |at: [f64; 2]| (at[0] * slope / slopes[0]).min(at[1] * slope / slopes[1]);
     let settling = flow.steady_depth_m(path([length; 2])) / (rain / 3.6e6);
-    // (Relative L1, worst of all cells that are not beside the ridge where both walls' waters meet) while half of it rises
-    // and when it is steady, on a grid of `cells`².
+    // (Relative L1, worst of all cells that are not beside the ridge where both walls' waters meet) while half of it
+    // rises and when it is steady, on a grid of `cells`².
     let seen = |cells: usize, flow: &SheetFlow| {
         let width = length / cells as f64;
         let mut grid = Runoff::dry([cells; 2], width, slopes, n);

@@ -39,7 +39,8 @@ fn an_open_border_reflects_a_fifth_of_a_per_cent() {
 
 #[test]
 fn a_sponge_makes_grazing_waves_leave() {
-    // A round wave in a channel meets its sides at all angles up to 70°; the same on a field so wide that nothing comes back.
+    // A round wave in a channel meets its sides at all angles up to 70°; the same on a field so wide that nothing comes
+    // back.
     let bump = |x: f64, z: f64| {
         move |i: usize, j: usize| {
             let r2 = (i as f64 - x).powi(2) + (j as f64 - z).powi(2);

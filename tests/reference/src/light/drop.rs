@@ -198,8 +198,8 @@ impl Seen {
     }
 }
 
-/// The line of sight along `view` (unit) through `through`, up to `orders` inner reflections or until 1e-7 of the light is
-/// left; `None` where it misses.
+/// The line of sight along `view` (unit) through `through`, up to `orders` inner reflections or until 1e-7 of the light
+/// is left; `None` where it misses.
 pub fn see(shape: &Shape, through: Vector, view: Vector, index: f64, orders: usize) -> Option<Seen> {
     let point = shape.hit(plus(through, view, -4.0), view)?;
     let normal = shape.normal(point);
@@ -247,8 +247,8 @@ pub fn see(shape: &Shape, through: Vector, view: Vector, index: f64, orders: usi
     Some(Seen { point, normal, paths })
 }
 
-/// What is seen on a grid of `side`² parallel lines of sight that covers the drop from −1.2 to 1.2 across and up: of each
-/// that meets it, a point and what is seen.
+/// What is seen on a grid of `side`² parallel lines of sight that covers the drop from −1.2 to 1.2 across and up: of
+/// each that meets it, a point and what is seen.
 pub fn picture(shape: &Shape, view: Vector, index: f64, orders: usize, side: u32) -> Vec<(Vector, Seen)> {
     let right = unit(cross(view, [0.0, 1.0, 0.0]));
     let up = cross(right, view);
