@@ -91,11 +91,8 @@ impl RainfallField {
             }
         }
         self.wind_m_s = conditions.wind_m_s;
-        let density = air_density_kg_m3(
-            conditions.pressure_pa,
-            conditions.air_temperature_c,
-            conditions.relative_humidity,
-        );
+        // Dry: vapour thins the air by at most 1 % and speeds drops by at most 0.5 %.
+        let density = air_density_kg_m3(conditions.pressure_pa, conditions.air_temperature_c, 0.0);
         self.motion.set_velocity(self.wind_m_s, density);
         self.motion.advance(seconds);
     }
