@@ -22,7 +22,8 @@ const DRIFT_STEPS: u32 = 256;
 /// cells and more use all threads of the current rayon pool.
 ///
 /// Construction allocates two heights a cell, three more numbers a cell once [`WaveField::set_depths`] is called, and
-/// one line along each axis. Steps, sources and the other updates allocate nothing.
+/// one line along each axis. Steps and sources allocate
+/// nothing; [`WaveField::set_step_ns`] under an open border makes its sponge anew.
 ///
 /// Stable for every damping and every depth up to that of `speed_m_s`, since C² λ_max < 4; without damping the energy
 /// ½Σ(u⁺−u)² − ½C²Σu⁺Lu is conserved.
