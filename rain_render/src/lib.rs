@@ -4,6 +4,7 @@
 //! and an encoder; this crate uploads, binds and records. Each pass is the same four things: what it is (`mod`),
 //! its inputs (`params`), its GPU objects (`prepare`), its commands (`encode`).
 
+mod bindings;
 pub mod compose;
 pub mod cover;
 pub mod gpu_types;

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::bindings::{storage_entry, texture_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::{RainfallView, Streak};
 use crate::rainfall::RainfallInput;
@@ -50,50 +51,6 @@ pub struct RainfallViewGpu {
     pub(super) drops: u32,
     pub(super) project: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
-}
-
-fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages, size: usize) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        },
-        count: None,
-    }
-}
-
-fn storage_entry(binding: u32, visibility: wgpu::ShaderStages, read_only: bool) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    }
-}
-
-fn texture_entry(
-    binding: u32,
-    visibility: wgpu::ShaderStages,
-    sample_type: wgpu::TextureSampleType,
-    view_dimension: wgpu::TextureViewDimension,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension,
-            multisampled: false,
-        },
-        count: None,
-    }
 }
 
 fn one_texel(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, layers: u32) -> wgpu::TextureView {

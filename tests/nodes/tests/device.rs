@@ -1,8 +1,8 @@
 //! A bare wgpu device and small compute kernels over `rain_render`'s shader library.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use bevy::tasks::block_on;
+use pollster::block_on;
 use rain_render::compose;
 
 /// A device without Bevy.
@@ -11,24 +11,27 @@ pub struct Device {
     pub queue: wgpu::Queue,
 }
 
-/// The device that all tests of this file's users share, one at a time; `None`, with the reason on stderr, where there
-/// is no adapter.
+/// The device that all tests share, one at a time; `None`, with the reason on stderr, where there is no adapter.
+///
+/// # Panics
+/// Without an adapter, where `RAIN_GPU=required` is set (`cargo xtask test` sets it): then a skip would hide a broken
+/// set-up.
 pub fn device() -> Option<MutexGuard<'static, Device>> {
-    static SHARED: Mutex<Option<&'static Mutex<Device>>> = Mutex::new(None);
-    if !test_support::gpu::available() {
-        return None;
+    static SHARED: OnceLock<Option<Mutex<Device>>> = OnceLock::new();
+    let shared = SHARED.get_or_init(|| open().map(Mutex::new)).as_ref();
+    if shared.is_none() {
+        let required = std::env::var("RAIN_GPU").is_ok_and(|v| v == "required");
+        assert!(!required, "RAIN_GPU=required, but there is no graphics adapter");
+        eprintln!("skipped: no graphics adapter");
     }
-    let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
-    let device = *shared.get_or_insert_with(|| Box::leak(Box::new(Mutex::new(open()))));
-    drop(shared);
-    Some(device.lock().unwrap_or_else(PoisonError::into_inner))
+    Some(shared?.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-fn open() -> Device {
+fn open() -> Option<Device> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapter = block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).expect("an adapter");
+    let adapter = block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).ok()?;
     let (device, queue) = block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
-    Device { device, queue }
+    Some(Device { device, queue })
 }
 
 /// The complete library as one WGSL text.

@@ -1,0 +1,9 @@
+//! The passes against their CPU twins, on a bare device.
+
+mod cover_parity;
+mod device;
+mod field_parity;
+mod hash_parity;
+mod optical_depth;
+mod shader_functions;
+mod wet_albedo;
