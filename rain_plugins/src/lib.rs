@@ -76,7 +76,8 @@ impl Plugin for RainSchedulePlugin {
                     .after(CameraUpdateSystems),
                 RainViewSystems::Surfaces
                     .after(RainViewSystems::Cover)
-                    .after(TransformSystems::Propagate),
+                    .after(TransformSystems::Propagate)
+                    .before(CameraUpdateSystems),
             ),
         );
     }
@@ -88,7 +89,9 @@ pub mod prelude {
     pub use crate::rainfall::RainView;
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
-    pub use crate::surface::{KeepDry, SurfaceWetting};
+    pub use crate::surface::{
+        KeepDry, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint, SurfaceWetting, WaterAppearance,
+    };
     pub use crate::{RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin};
     pub use rain_ecs::prelude::*;
 }

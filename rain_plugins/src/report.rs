@@ -10,6 +10,8 @@ use bevy::prelude::*;
 pub enum PassName {
     /// Depth along the rain.
     Cover,
+    /// The mirrored view.
+    Reflection,
     /// Streaks near the eye.
     Rainfall,
     /// Measurement masks (only when asked for).
@@ -22,6 +24,7 @@ impl PassName {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Cover => "cover",
+            Self::Reflection => "reflection",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
         }
@@ -35,6 +38,8 @@ pub enum SkipReason {
     Dry,
     /// Nothing falls.
     NoRain,
+    /// No water to mirror anything, or the eye is under it.
+    NoWater,
     /// The view's air is closed in: no rain can be in sight.
     Indoors,
     /// Nothing that covers has moved; the kept map is used.
@@ -54,6 +59,7 @@ impl SkipReason {
         match self {
             Self::Dry => "dry",
             Self::NoRain => "no rain",
+            Self::NoWater => "no water",
             Self::Indoors => "indoors",
             Self::NothingMoved => "nothing moved",
             Self::NoView => "no view",

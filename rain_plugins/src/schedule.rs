@@ -9,6 +9,6 @@ pub enum RainViewSystems {
     Cover,
     /// Fills each view's rain container; after cameras are updated.
     Views,
-    /// Swaps wet materials in and out.
+    /// What surfaces show, and the mirrored view; before cameras and frusta are updated.
     Surfaces,
 }

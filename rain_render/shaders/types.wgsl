@@ -90,13 +90,56 @@ struct Streak {
     light: vec4<f32>,
 }
 
+// Levels of standing water over the ground, one texel a cell. Positions are relative to the eye, in metres.
+struct LevelMapParams {
+    // Corner of the first cell (x, z).
+    corner: vec2<f32>,
+    // 1 / edge of a cell, 1/m.
+    inverse_cell: f32,
+    // Height of level 0 above the eye.
+    base: f32,
+    // Cells along x and z.
+    cells: vec2<f32>,
+    // 1 when there is a map, 0 for none.
+    present: f32,
+    pad: f32,
+}
+
+// How standing water looks.
+struct WaterLook {
+    // Absorption of the water, 1/m; w: strength of the ripples, 0 for none.
+    absorption: vec4<f32>,
+    // Albedo of what is suspended in it; w: its scattering, 1/m.
+    suspended: vec4<f32>,
+    // Wind waves. x: mean square slope on open water, y: 1 / length of the longest, 1/m, z, w: direction times speed,
+    // m/s.
+    ambient: vec4<f32>,
+    // Ripple tile. x: 1 / side, 1/m, y, z: the eye's place in the tile in sides, w: 1 when there is one.
+    ripples: vec4<f32>,
+    // Wave tile. x, y: its corner (x, z), z: 1 / side, 1/m, w: 1 when there is one.
+    waves: vec4<f32>,
+}
+
+// The mirrored view.
+struct ReflectionParams {
+    // Eye-relative world to the mirrored view's clip space.
+    clip_from_eye: mat4x4<f32>,
+    // World position of the eye it belongs to, m; w: strength, 0 when there is none.
+    eye: vec4<f32>,
+}
+
 // What the wet look and the wet mask read.
 struct SurfaceParams {
-    // World position of the eye, m.
+    // World position of the eye, m; w: time in s, from 0 to 4096.
     eye: vec4<f32>,
-    // x: wetness 0..1, y: water level mm, z: texture depth mm, w: unused.
+    // x: wetness 0..1, y: water level mm, z: texture depth mm, w: rain mm/h.
     state: vec4<f32>,
+    // Artists' levels, 0..1. x: wetness, y: holes, z: puddles, w: 1 when they rule, 0 when the physical state does.
+    artist: vec4<f32>,
     cover: CoverParams,
+    levels: LevelMapParams,
+    water: WaterLook,
+    reflection: ReflectionParams,
 }
 
 struct MaskView {

@@ -23,7 +23,16 @@ macro_rules! library {
 }
 
 /// Every library file, each after those it calls.
-pub const LIBRARIES: &[Library] = library!["hash", "drop_field", "cover", "streak", "drop_light", "wetness"];
+pub const LIBRARIES: &[Library] = library![
+    "hash",
+    "drop_field",
+    "cover",
+    "streak",
+    "drop_light",
+    "wetness",
+    "standing_water",
+    "placed_water"
+];
 
 /// A pass's own source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,6 +56,9 @@ pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask"]
 /// shelters, awnings and canopies of filling stations are lower. Units: m.
 pub const BUILDING_HEIGHT_M: f64 = 5.0;
 
+/// What lies deeper than this under a puddle's level is another floor, not its bottom. Units: m.
+pub const DEEPEST_PUDDLE_M: f64 = 0.6;
+
 /// Constants that shaders share with `rain_core`.
 #[must_use]
 pub fn constants() -> String {
@@ -55,6 +67,7 @@ pub fn constants() -> String {
         ("RAIN_RANGE_CAP_M", RANGE_CAP_M),
         ("RAIN_FADE_END", FADE_END),
         ("RAIN_BUILDING_HEIGHT_M", BUILDING_HEIGHT_M),
+        ("RAIN_DEEPEST_PUDDLE_M", DEEPEST_PUDDLE_M),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }

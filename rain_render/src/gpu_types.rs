@@ -69,13 +69,48 @@ pub struct Streak {
     pub light: [f32; 4],
 }
 
+/// Levels of standing water over the ground.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct LevelMapParams {
+    pub corner: [f32; 2],
+    pub inverse_cell: f32,
+    pub base: f32,
+    pub cells: [f32; 2],
+    pub present: f32,
+    pub pad: f32,
+}
+
+/// How standing water looks.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct WaterLook {
+    pub absorption: [f32; 4],
+    pub suspended: [f32; 4],
+    pub ambient: [f32; 4],
+    pub ripples: [f32; 4],
+    pub waves: [f32; 4],
+}
+
+/// The mirrored view.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct ReflectionParams {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub eye: [f32; 4],
+}
+
 /// What the wet look and the wet mask read.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct SurfaceParams {
     pub eye: [f32; 4],
     pub state: [f32; 4],
+    pub artist: [f32; 4],
     pub cover: CoverParams,
+    pub levels: LevelMapParams,
+    pub water: WaterLook,
+    pub reflection: ReflectionParams,
 }
 
 /// The mask pass's view.
@@ -107,7 +142,10 @@ pub fn layouts() -> Vec<Layout> {
             viewport, focal, near, exposure, contrast, kappa, soft, drops, pad_a, pad_b, pad_c, cover, classes),
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
-        layout!(SurfaceParams: eye, state, cover),
+        layout!(LevelMapParams: corner, inverse_cell, base, cells, present, pad),
+        layout!(WaterLook: absorption, suspended, ambient, ripples, waves),
+        layout!(ReflectionParams: clip_from_eye, eye),
+        layout!(SurfaceParams: eye, state, artist, cover, levels, water, reflection),
         layout!(MaskView: eye_from_clip, screen, surface),
     ]
 }

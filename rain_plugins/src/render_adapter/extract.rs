@@ -6,19 +6,20 @@ use std::sync::atomic::AtomicBool;
 use bevy::asset::AssetId;
 use bevy::image::Image;
 use bevy::light::{DirectionalLight, EnvironmentMapLight, GlobalAmbientLight};
-use bevy::math::{Vec3, Vec4};
+use bevy::math::{Mat4, Vec3, Vec4};
 use bevy::prelude::*;
 use bevy::render::Extract;
 use bevy::render::storage::ShaderBuffer;
 use bevy::render::sync_world::RenderEntity;
 use rain_core::rainfall::Container;
 use rain_render::cover::CoverPlacement;
+use rain_render::gpu_types::WaterLook;
 use rain_render::rainfall::Shutter;
 
 use super::RainMasks;
 use crate::cover::CoverMap;
 use crate::rainfall::{RainViewFrame, ViewMotion};
-use crate::surface::SurfaceState;
+use crate::surface::{MirrorFrame, SurfaceState, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};
 
 /// One camera that sees rain.
 #[derive(Component, Clone)]
@@ -59,17 +60,65 @@ pub(super) struct ExtractedCover {
 /// What surfaces show of the weather.
 #[derive(Clone)]
 pub(super) struct ExtractedSurface {
-    /// See `SurfaceParams::state`.
+    /// See `SurfaceParams`.
     pub state: Vec4,
+    pub artist: Vec4,
+    pub time_s: f32,
+    pub water: WaterLook,
+    pub images: Option<ExtractedWaterImages>,
+    pub levels: Option<WaterLevels>,
+    pub mirror: Option<(Mat4, Vec3)>,
+    pub mirror_strength: f32,
     pub buffer: AssetId<ShaderBuffer>,
     pub anchor: Vec3,
     pub wet: bool,
+}
+
+/// The textures that wet materials read.
+#[derive(Clone, Copy)]
+pub(super) struct ExtractedWaterImages {
+    pub levels: AssetId<Image>,
+    pub reflection: AssetId<Image>,
+}
+
+/// The material's view of the appearance and of the wind.
+fn water_look(appearance: &WaterAppearance, surface: &SurfaceState) -> WaterLook {
+    let wind = surface.wind_m_s;
+    let velocity = appearance
+        .wave_velocity_m_s
+        .unwrap_or_else(|| wind.normalize_or_zero() * 0.3);
+    let variance = wind_slope_variance(f64::from(wind.length())) as f32;
+    let square = appearance.wave_strength * appearance.wave_strength;
+    WaterLook {
+        absorption: appearance
+            .absorption_per_m
+            .extend(appearance.ripple_strength)
+            .to_array(),
+        suspended: appearance
+            .suspended_albedo
+            .extend(appearance.turbidity_per_m)
+            .to_array(),
+        ambient: [
+            variance * square,
+            1.0 / appearance.wave_length_m,
+            velocity.x,
+            velocity.y,
+        ],
+        ripples: [0.0; 4],
+        waves: [0.0; 4],
+    }
 }
 
 pub(super) fn extract_rain(
     mut commands: Commands,
     map: Extract<Option<Res<CoverMap>>>,
     surface: Extract<Option<Res<SurfaceState>>>,
+    water: Extract<(
+        Option<Res<WaterImages>>,
+        Option<Res<WaterLevels>>,
+        Option<Res<WaterAppearance>>,
+        Option<Res<MirrorFrame>>,
+    )>,
     ambient: Extract<Option<Res<GlobalAmbientLight>>>,
     suns: Extract<Query<(&DirectionalLight, &GlobalTransform)>>,
     views: Extract<
@@ -85,6 +134,9 @@ pub(super) fn extract_rain(
     let sun = suns
         .iter()
         .max_by(|(a, _), (b, _)| a.illuminance.total_cmp(&b.illuminance));
+    let (images, levels, appearance, mirror) = &*water;
+    // What does not validate looks like clear water.
+    let appearance = appearance.as_ref().and_then(|a| a.validated().ok()).unwrap_or_default();
     commands.insert_resource(ExtractedRainScene {
         cover: map.as_ref().map(|map| ExtractedCover {
             image: map.image.id(),
@@ -97,6 +149,19 @@ pub(super) fn extract_rain(
         sun: sun.map_or(Vec3::ZERO, |(l, _)| linear(l.color) * l.illuminance),
         surface: surface.as_ref().map(|surface| ExtractedSurface {
             state: surface.state,
+            artist: surface.artist,
+            time_s: surface.time_s,
+            water: water_look(&appearance, surface),
+            images: images.as_ref().map(|i| ExtractedWaterImages {
+                levels: i.levels.id(),
+                reflection: i.reflection.id(),
+            }),
+            levels: levels
+                .as_ref()
+                .filter(|l| l.is_valid() && !l.levels_m.is_empty())
+                .map(|l| (**l).clone()),
+            mirror: mirror.as_ref().and_then(|m| m.view),
+            mirror_strength: appearance.reflection_strength,
             buffer: surface.handles.params.id(),
             anchor: surface.anchor,
             wet: surface.wet,

@@ -19,7 +19,7 @@ use bevy::core_pipeline::core_3d::main_transparent_pass_3d;
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::core_pipeline::schedule::Core3d;
 use bevy::core_pipeline::tonemapping::Tonemapping;
-use bevy::image::Image;
+use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
 use bevy::prelude::*;
 pub(crate) use bevy::render::RenderApp;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
@@ -33,6 +33,7 @@ pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
 use crate::cover::RainCoverView;
 use crate::rainfall::SoftwareAdapter;
 use crate::report::RainReport;
+use crate::surface::RainMirrorView;
 
 /// Images that receive measurement masks of a view; put on a camera with [`crate::rainfall::RainView`],
 /// `DepthPrepass` and `Msaa::Off`. Made with [`mask_image`].
@@ -44,6 +45,20 @@ pub struct RainMasks {
     pub wet: Handle<Image>,
     /// Distance from the eye, m (R32Float).
     pub depth: Handle<Image>,
+}
+
+impl SyncComponent for RainMirrorView {
+    type Target = Self;
+}
+
+impl ExtractComponent for RainMirrorView {
+    type QueryData = &'static Self;
+    type QueryFilter = ();
+    type Out = Self;
+
+    fn extract_component(item: &Self) -> Option<Self> {
+        Some(*item)
+    }
 }
 
 impl SyncComponent for RainCoverView {
@@ -92,6 +107,40 @@ pub(crate) fn cover_image(texels: u32) -> Image {
         TextureFormat::Depth32Float,
         TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
     )
+}
+
+/// A single-precision texture of the levels of standing water.
+pub(crate) fn level_image(texels: u32) -> Image {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    gpu_image("rain water levels", texels, texels, TextureFormat::R32Float, usage)
+}
+
+/// A tiling texture of water slopes with all its mips; see `rain_render::slope_mips`.
+pub(crate) fn slope_image(texels: u32) -> Image {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
+    let mut image = gpu_image("rain water slopes", texels, texels, TextureFormat::Rgba16Float, usage);
+    image.texture_descriptor.mip_level_count = texels.ilog2() + 1;
+    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        address_mode_u: ImageAddressMode::Repeat,
+        address_mode_v: ImageAddressMode::Repeat,
+        ..ImageSamplerDescriptor::linear()
+    });
+    image
+}
+
+/// What the mirrored view is kept in.
+pub(crate) fn reflection_image(size: UVec2) -> Image {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let size = size.clamp(UVec2::splat(16), UVec2::splat(4096));
+    gpu_image("rain reflection", size.x, size.y, TextureFormat::Rgba16Float, usage)
+}
+
+/// What the mirrored camera draws into: its picture is copied, because what it draws reads the copy.
+pub(crate) fn reflection_target(size: UVec2) -> Image {
+    let size = size.clamp(UVec2::splat(16), UVec2::splat(4096));
+    let mut image = Image::new_target_texture(size.x, size.y, TextureFormat::Rgba16Float, None);
+    image.asset_usage = RenderAssetUsages::RENDER_WORLD;
+    image
 }
 
 /// A depth-only camera: no colour target, so every colour pass leaves its view out.
@@ -165,6 +214,7 @@ impl Plugin for RainRenderPlugin {
         }
         app.add_plugins((
             ExtractComponentPlugin::<RainCoverView>::default(),
+            ExtractComponentPlugin::<RainMirrorView>::default(),
             wet_material::WetMaterialPlugin,
         ));
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
@@ -181,6 +231,9 @@ impl Plugin for RainRenderPlugin {
                     record::keep_cover_map
                         .after(Core3dSystems::Prepass)
                         .before(Core3dSystems::MainPass),
+                    record::keep_reflection
+                        .after(Core3dSystems::MainPass)
+                        .before(Core3dSystems::EarlyPostProcess),
                     record::rainfall
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),

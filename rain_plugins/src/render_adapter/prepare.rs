@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::atomic::Ordering::Relaxed;
 
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
-use bevy::math::{DVec3, Mat4, Vec2, Vec3};
+use bevy::math::{DVec3, Mat4, Vec2, Vec3, Vec3Swizzles as _};
 use bevy::prelude::*;
 use bevy::render::camera::ExtractedCamera;
 use bevy::render::render_asset::RenderAssets;
@@ -13,12 +13,13 @@ use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa};
 use rain_render::cover::open_sky;
-use rain_render::gpu_types::SurfaceParams;
+use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams};
 use rain_render::masks::MaskGpu;
 use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
 
-use super::extract::{ExtractedRainScene, ExtractedRainView};
+use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedSurface};
 use crate::report::RainReport;
+use crate::surface::WaterLevels;
 
 /// Everything on the GPU that lives with the device; rebuilt after a device loss.
 #[derive(Resource)]
@@ -27,6 +28,8 @@ pub(super) struct RainGpu {
     pub views: HashMap<Entity, RainfallViewGpu>,
     pub masks: MaskGpu,
     pub mask_bind_groups: HashMap<Entity, wgpu::BindGroup>,
+    /// Which levels of standing water the texture holds.
+    levels_version: Option<u64>,
 }
 
 impl FromWorld for RainGpu {
@@ -42,7 +45,62 @@ impl FromWorld for RainGpu {
             views: HashMap::new(),
             masks: MaskGpu::new(device),
             mask_bind_groups: HashMap::new(),
+            levels_version: None,
         }
+    }
+}
+
+fn upload_levels(queue: &RenderQueue, levels: &WaterLevels, texture: &wgpu::Texture) {
+    queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&levels.levels_m),
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * levels.cells.x),
+            rows_per_image: None,
+        },
+        wgpu::Extent3d {
+            width: levels.cells.x,
+            height: levels.cells.y,
+            depth_or_array_layers: 1,
+        },
+    );
+}
+
+/// What wet materials read, relative to an eye.
+fn surface_params(surface: Option<&ExtractedSurface>, cover: CoverParams, eye: Vec3) -> SurfaceParams {
+    let Some(surface) = surface else {
+        return SurfaceParams {
+            cover,
+            ..bytemuck::Zeroable::zeroed()
+        };
+    };
+    let origin = eye.as_dvec3();
+    let levels = surface
+        .levels
+        .as_ref()
+        .map_or_else(LevelMapParams::default, |l| LevelMapParams {
+            corner: (l.corner_m - origin.xz()).as_vec2().to_array(),
+            inverse_cell: (1.0 / l.cell_m) as f32,
+            base: (l.base_m - origin.y) as f32,
+            cells: l.cells.as_vec2().to_array(),
+            present: 1.0,
+            pad: 0.0,
+        });
+    let reflection = surface
+        .mirror
+        .map_or_else(ReflectionParams::default, |(clip_from_world, at)| ReflectionParams {
+            clip_from_eye: (clip_from_world * Mat4::from_translation(eye)).to_cols_array_2d(),
+            eye: at.extend(surface.mirror_strength).to_array(),
+        });
+    SurfaceParams {
+        eye: eye.extend(surface.time_s).to_array(),
+        state: surface.state.to_array(),
+        artist: surface.artist.to_array(),
+        cover,
+        levels,
+        water: surface.water,
+        reflection,
     }
 }
 
@@ -72,11 +130,15 @@ pub(super) fn prepare_rain(
         (Some(placement), Some(_)) => placement.params(eye),
         _ => open_sky(),
     };
-    let surface_params = |eye: Vec3| SurfaceParams {
-        eye: eye.extend(0.0).to_array(),
-        state: scene.surface.as_ref().map_or([0.0; 4], |s| s.state.to_array()),
-        cover: cover_at(eye.as_dvec3()),
-    };
+    let surface_params = |eye: Vec3| surface_params(scene.surface.as_ref(), cover_at(eye.as_dvec3()), eye);
+    if let Some((levels, image)) = scene.surface.as_ref().and_then(|s| {
+        let image = images.get(s.images.as_ref()?.levels)?;
+        Some((s.levels.as_ref()?, image))
+    }) && gpu.levels_version != Some(levels.version)
+    {
+        upload_levels(&queue, levels, &image.texture);
+        gpu.levels_version = Some(levels.version);
+    }
     if let Some(surface) = scene.surface.as_ref().filter(|s| s.wet)
         && let Some(buffer) = buffers.get(surface.buffer)
     {

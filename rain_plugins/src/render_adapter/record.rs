@@ -15,6 +15,7 @@ use super::extract::{ExtractedRainScene, ExtractedRainView};
 use super::prepare::RainGpu;
 use crate::cover::RainCoverView;
 use crate::report::{PassName, RainReport};
+use crate::surface::RainMirrorView;
 
 /// Copies the cover view's depth into the map that everybody reads: views share and recycle their own textures.
 pub(super) fn keep_cover_map(
@@ -44,6 +45,31 @@ pub(super) fn keep_cover_map(
         .complete
         .store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
     report.recorded(PassName::Cover);
+}
+
+/// Copies the mirrored view into the texture that wet materials read.
+pub(super) fn keep_reflection(
+    view: ViewQuery<&ViewTarget, With<RainMirrorView>>,
+    scene: Option<Res<ExtractedRainScene>>,
+    images: Res<RenderAssets<GpuImage>>,
+    report: Res<RainReport>,
+    mut ctx: RenderContext,
+) {
+    let target = view.into_inner();
+    let Some(surface) = scene.as_ref().and_then(|s| s.surface.as_ref()) else {
+        return;
+    };
+    let Some(kept) = surface.images.as_ref().and_then(|i| images.get(i.reflection)) else {
+        return;
+    };
+    let source: &wgpu::Texture = target.main_texture();
+    let kept: &wgpu::Texture = &kept.texture;
+    if source.size() != kept.size() || source.format() != kept.format() {
+        return;
+    }
+    ctx.command_encoder()
+        .copy_texture_to_texture(source.as_image_copy(), kept.as_image_copy(), kept.size());
+    report.recorded(PassName::Reflection);
 }
 
 /// Projects and draws a view's streaks over its colour target, and its masks where somebody asked for them.

@@ -18,12 +18,40 @@ pub struct WetSurface {
     /// x: strength 0…1; y: porosity 0…1, below 0: guessed from roughness and metalness.
     #[uniform(100)]
     pub wetting: Vec4,
+    /// Painted puddles: source (0 none, 1 vertex colours, 2 texture), margin, least flood level, depth m.
+    #[uniform(100)]
+    pub paint: Vec4,
+    /// Painted puddles: fixed, height map, what to show; w unused.
+    #[uniform(100)]
+    pub paint_flags: Vec4,
+    /// Noise puddles: 1 / size along x and z, seed, level (below 0: the weather's).
+    #[uniform(100)]
+    pub noise: Vec4,
+    /// Noise puddles: present, height map; z, w unused.
+    #[uniform(100)]
+    pub noise_flags: Vec4,
     /// The cover map.
     #[texture(101, sample_type = "depth")]
     pub cover: Handle<Image>,
     /// [`SurfaceParams`].
     #[storage(102, read_only)]
     pub params: Handle<ShaderBuffer>,
+    /// Levels of standing water.
+    #[texture(103, sample_type = "float", filterable = false)]
+    pub levels: Handle<Image>,
+    /// Slopes of the rings that drops make.
+    #[texture(104)]
+    #[sampler(105)]
+    pub ripples: Handle<Image>,
+    /// Slopes of interactive waves.
+    #[texture(106)]
+    pub waves: Handle<Image>,
+    /// The mirrored view.
+    #[texture(107)]
+    pub reflection: Handle<Image>,
+    /// Painted channels; without it white, which is unpainted ground.
+    #[texture(108)]
+    pub painted: Option<Handle<Image>>,
 }
 
 impl MaterialExtension for WetSurface {
@@ -53,7 +81,7 @@ impl Plugin for WetMaterialPlugin {
         source.push_str(&compose::constants());
         source.push_str(compose::TYPES);
         for library in compose::LIBRARIES {
-            if ["cover", "wetness"].contains(&library.name) {
+            if ["hash", "cover", "wetness", "standing_water", "placed_water"].contains(&library.name) {
                 source.push_str(library.source);
             }
         }

@@ -173,6 +173,8 @@ pub struct Environment {
     /// Whether wet surfaces mirror the scene itself, drawn from the eye before each capture; else the sky alone.
     /// Default: true.
     pub probe: bool,
+    /// Whether wet level ground mirrors the scene in a second view. Default: true.
+    pub reflection: bool,
 }
 
 impl Default for Environment {
@@ -185,6 +187,7 @@ impl Default for Environment {
             fog_visibility_m: None,
             bloom: true,
             probe: true,
+            reflection: true,
         }
     }
 }

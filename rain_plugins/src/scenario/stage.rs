@@ -24,7 +24,7 @@ use super::run::RunError;
 use super::sky::{Cube, Handedness, SkyModel, generate};
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
-use crate::surface::KeepDry;
+use crate::surface::{KeepDry, PlanarReflection};
 
 /// Where the pictures come from.
 #[derive(Resource, Clone)]
@@ -292,6 +292,9 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             exposure_s: scenario.rain.exposure_s as f32,
             ..default()
         });
+        if environment.reflection {
+            camera.insert(PlanarReflection::default());
+        }
         if let Some(masks) = &masks {
             camera.insert(masks.clone());
         }

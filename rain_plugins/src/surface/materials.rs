@@ -5,10 +5,14 @@ use std::collections::BTreeMap;
 use bevy::asset::{AssetEventSystems, AssetId};
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
+use rain_ecs::prelude::*;
 
+use super::paint::{NoisePuddles, PuddlePaint};
+use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirror};
 use super::state::{SurfaceState, create_state, follow_weather};
+use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::CoverMap;
-use crate::render_adapter::{RenderApp, WetMaterial, WetSurface};
+use crate::render_adapter::{RenderApp, WetMaterial, WetSurface, level_image, reflection_image, slope_image};
 use crate::schedule::RainViewSystems;
 
 /// Keeps a mesh's material as it is, however wet the weather.
@@ -66,9 +70,16 @@ impl OriginalMaterialItem<'_, '_> {
     }
 }
 
+/// How a mesh takes water: what wet copies of one material differ by.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct WetKey {
+    uniform: [[u32; 4]; 5],
+    painted: Option<AssetId<Image>>,
+}
+
 /// Wet copies, by original and by how they take water.
 #[derive(Resource, Default)]
-struct WetCopies(BTreeMap<(AssetId<StandardMaterial>, [u32; 4]), Handle<WetMaterial>>);
+struct WetCopies(BTreeMap<AssetId<StandardMaterial>, BTreeMap<WetKey, Handle<WetMaterial>>>);
 
 /// Makes every `StandardMaterial` wet where rain reaches it. Needs the cover map: without `CoverPlugin` nothing gets
 /// wet.
@@ -81,16 +92,32 @@ impl Plugin for WetSurfacePlugin {
         }
         app.register_type::<KeepDry>()
             .register_type::<SurfaceWetting>()
+            .register_type::<PlanarReflection>()
+            .register_type::<PuddlePaint>()
+            .register_type::<NoisePuddles>()
+            .register_type::<RainMirrorView>()
+            .register_type::<ReflectionSize>()
+            .register_type::<WaterAppearance>()
             .init_resource::<WetCopies>()
-            .add_systems(Startup, create_state)
+            .init_resource::<MirrorFrame>()
+            .init_resource::<ReflectionSize>()
+            .init_resource::<WaterAppearance>()
+            .init_resource::<WaterLevels>()
+            .add_systems(Startup, (create_state, create_images))
             .add_systems(
                 PostUpdate,
                 (
-                    follow_weather.in_set(RainViewSystems::Surfaces),
+                    (follow_weather, aim_mirror).chain().in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
                     // once with the pipeline of one material and the bindings of the other, which stops the renderer.
                     (
-                        (follow_originals, wet_meshes.run_if(resource_exists::<CoverMap>)).run_if(something_is_wet),
+                        (
+                            follow_originals,
+                            follow_settings,
+                            wet_meshes.run_if(resource_exists::<CoverMap>),
+                        )
+                            .chain()
+                            .run_if(something_is_wet),
                         dry_meshes.run_if(not(something_is_wet)),
                     )
                         .chain()
@@ -101,8 +128,18 @@ impl Plugin for WetSurfacePlugin {
     }
 }
 
-fn something_is_wet(surface: Res<SurfaceState>) -> bool {
-    surface.wet
+fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, mirror: Res<ReflectionSize>) {
+    commands.insert_resource(WaterImages {
+        levels: images.add(level_image(LEVEL_TEXELS)),
+        ripples: images.add(slope_image(256)),
+        waves: images.add(slope_image(256)),
+        reflection: images.add(reflection_image(mirror.0)),
+    });
+}
+
+/// Painted meshes wear the wet material also when dry: their vertex colours are no tint.
+fn something_is_wet(surface: Res<SurfaceState>, painted: Query<(), With<PuddlePaint>>) -> bool {
+    surface.wet || !painted.is_empty()
 }
 
 /// Changes of an original reach its wet copies.
@@ -115,8 +152,7 @@ fn follow_originals(
     for event in events.read() {
         let AssetEvent::Modified { id } = event else { continue };
         let Some(original) = originals.get(*id) else { continue };
-        for ((of, _), copy) in copies.0.range((*id, [0; 4])..=(*id, [u32::MAX; 4])) {
-            debug_assert_eq!(of, id);
+        for copy in copies.0.get(id).into_iter().flat_map(BTreeMap::values) {
             if let Some(mut material) = wet.get_mut(copy) {
                 material.base = original.clone();
             }
@@ -124,15 +160,27 @@ fn follow_originals(
     }
 }
 
+/// A mesh that may be given a wet copy.
+#[derive(QueryData)]
+struct Wettable {
+    entity: Entity,
+    material: &'static MeshMaterial3d<StandardMaterial>,
+    wetting: Option<&'static SurfaceWetting>,
+    paint: Option<&'static PuddlePaint>,
+    noise: Option<&'static NoisePuddles>,
+}
+
 /// Gives every mesh that has none a wet copy of its material.
 fn wet_meshes(
     mut commands: Commands,
     surface: Res<SurfaceState>,
     map: Res<CoverMap>,
+    water: Res<WaterImages>,
     originals: Res<Assets<StandardMaterial>>,
     mut wet: ResMut<Assets<WetMaterial>>,
     mut copies: ResMut<WetCopies>,
-    meshes: Query<(Entity, &MeshMaterial3d<StandardMaterial>, Option<&SurfaceWetting>), Without<KeepDry>>,
+    mut errors: MessageWriter<RainConfigError>,
+    meshes: Query<Wettable, Without<KeepDry>>,
     exempt: Query<(Entity, &DryMaterial), With<KeepDry>>,
 ) {
     for (entity, dry) in &exempt {
@@ -141,30 +189,75 @@ fn wet_meshes(
             .insert(MeshMaterial3d(dry.0.clone()))
             .remove::<(MeshMaterial3d<WetMaterial>, DryMaterial)>();
     }
-    for (entity, material, wetting) in &meshes {
-        let Some(original) = originals.get(&material.0) else {
+    for mesh in &meshes {
+        let id = mesh.material.0.id();
+        let Some(original) = originals.get(id) else {
             continue;
         };
         // Glass and other blended surfaces keep their material; so does what is not lit.
         if original.unlit || !matches!(original.alpha_mode, AlphaMode::Opaque | AlphaMode::Mask(_)) {
             continue;
         }
-        let wetting = wetting.copied().unwrap_or_default().uniform();
-        let key = (material.0.id(), wetting.to_array().map(f32::to_bits));
-        let copy = copies.0.entry(key).or_insert_with(|| {
+        let mut refuse = |error| {
+            errors.write(RainConfigError {
+                entity: mesh.entity,
+                error,
+            });
+        };
+        // What does not validate counts as absent.
+        let paint = mesh.paint.and_then(|p| p.validated().map_err(&mut refuse).ok());
+        let noise = mesh.noise.and_then(|n| n.validated().map_err(&mut refuse).ok());
+        let wetting = mesh.wetting.copied().unwrap_or_default().uniform();
+        let [paint_uniform, paint_flags] = paint.map_or([Vec4::ZERO; 2], PuddlePaint::uniform);
+        let [noise_uniform, noise_flags] = noise.map_or([Vec4::ZERO; 2], NoisePuddles::uniform);
+        let painted = paint.and_then(PuddlePaint::texture);
+        let uniform = [wetting, paint_uniform, paint_flags, noise_uniform, noise_flags];
+        let key = WetKey {
+            uniform: uniform.map(|v| v.to_array().map(f32::to_bits)),
+            painted: painted.as_ref().map(Handle::id),
+        };
+        let copy = copies.0.entry(id).or_default().entry(key).or_insert_with(|| {
             wet.add(WetMaterial {
                 base: original.clone(),
                 extension: WetSurface {
                     wetting,
+                    paint: paint_uniform,
+                    paint_flags,
+                    noise: noise_uniform,
+                    noise_flags,
                     cover: map.image.clone(),
                     params: surface.handles.params.clone(),
+                    levels: water.levels.clone(),
+                    ripples: water.ripples.clone(),
+                    waves: water.waves.clone(),
+                    reflection: water.reflection.clone(),
+                    painted,
                 },
             })
         });
         commands
-            .entity(entity)
-            .insert((MeshMaterial3d(copy.clone()), DryMaterial(material.0.clone())))
+            .entity(mesh.entity)
+            .insert((MeshMaterial3d(copy.clone()), DryMaterial(mesh.material.0.clone())))
             .remove::<MeshMaterial3d<StandardMaterial>>();
+    }
+}
+
+/// A mesh whose way to take water changed gets its own material back, from which it is made wet anew.
+fn follow_settings(
+    mut commands: Commands,
+    meshes: Query<
+        (Entity, &DryMaterial),
+        (
+            With<MeshMaterial3d<WetMaterial>>,
+            Or<(Changed<SurfaceWetting>, Changed<PuddlePaint>, Changed<NoisePuddles>)>,
+        ),
+    >,
+) {
+    for (entity, dry) in &meshes {
+        commands
+            .entity(entity)
+            .insert(MeshMaterial3d(dry.0.clone()))
+            .remove::<(MeshMaterial3d<WetMaterial>, DryMaterial)>();
     }
 }
 

@@ -5,7 +5,13 @@
 //! Changes that the app makes to the originals meanwhile are followed.
 
 mod materials;
+mod paint;
+mod reflection;
 mod state;
+mod water;
 
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
-pub use state::SurfaceState;
+pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
+pub use reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize};
+pub use state::{SurfaceState, WAVE_PERIOD_S};
+pub use water::{LEVEL_TEXELS, NO_WATER_M, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};

@@ -6,14 +6,25 @@ use rain_ecs::prelude::*;
 use crate::rainfall::RainView;
 use crate::render_adapter::WetSurfaceHandles;
 
+/// After this time wind waves start anew. Units: s.
+pub const WAVE_PERIOD_S: f64 = 4096.0;
+
 /// The class whose wetness every material shows.
 const CLASS: SurfaceClass = SurfaceClass::Asphalt;
 
 /// Wetness for the shaders, taken from the weather once a frame.
 #[derive(Resource, Clone, Debug)]
 pub struct SurfaceState {
-    /// x: wetness 0…1, y: water level mm, z: texture depth mm, w: unused.
+    /// x: wetness 0…1, y: water level mm, z: texture depth mm, w: rain mm/h.
     pub state: Vec4,
+    /// The artists' wetness, holes and puddles, 0…1; w: 1 when they rule.
+    pub artist: Vec4,
+    /// Where the air goes, horizontally (x, z). Units: m/s.
+    pub wind_m_s: Vec2,
+    /// Time of the waves: the rain clock's, from 0 to [`WAVE_PERIOD_S`]. Units: s.
+    pub time_s: f32,
+    /// World height of the ground under the first view, where it is known. Units: m.
+    pub ground_m: Option<f32>,
     /// Origin of the eye-relative positions in the buffer. Units: m, world.
     pub anchor: Vec3,
     /// Something is wet, or rain falls.
@@ -26,6 +37,10 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
     if let Some(handles) = handles {
         commands.insert_resource(SurfaceState {
             state: Vec4::ZERO,
+            artist: Vec4::ZERO,
+            wind_m_s: Vec2::ZERO,
+            time_s: 0.0,
+            ground_m: None,
             anchor: Vec3::ZERO,
             wet: false,
             handles: handles.clone(),
@@ -55,6 +70,17 @@ pub(super) fn follow_weather(
         weather.wetness_at(CLASS, clock.interpolation()) as f32,
         weather.water_level_mm_at(CLASS, clock.interpolation()) as f32,
         weather.surfaces().properties(CLASS).texture_depth_mm as f32,
-        0.0,
+        weather.conditions().intensity_mm_h as f32,
     );
+    let artist = weather.artist();
+    surface.artist = Vec4::new(
+        artist.wetness as f32,
+        artist.holes as f32,
+        artist.puddles as f32,
+        f32::from(u8::from(weather.mode() == WeatherMode::Artist)),
+    );
+    let wind = weather.conditions().wind_m_s;
+    surface.wind_m_s = Vec2::new(wind.x as f32, wind.z as f32);
+    let seconds = clock.now_s() + f64::from(clock.interpolation()) * clock.tick_ns() as f64 / 1e9;
+    surface.time_s = (seconds % WAVE_PERIOD_S) as f32;
 }

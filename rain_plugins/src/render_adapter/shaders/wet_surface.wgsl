@@ -1,11 +1,15 @@
-// A StandardMaterial that gets wet: darker body, water film on top, dry under cover.
+// A StandardMaterial that gets wet: darker body, water film on top, puddles where water stands, dry under cover.
 
 #import bevy_pbr::{
     pbr_fragment::pbr_input_from_standard_material,
     pbr_functions::alpha_discard,
+    pbr_bindings::{depth_map_texture, depth_map_sampler},
+    mesh_view_bindings::view,
 }
 #import rain::surface::{
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
+    rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_through_water, rain_wind_slopes,
+    rain_painted_puddle_water, rain_crack_water, rain_puddle_noise,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -16,53 +20,227 @@
 #import bevy_pbr::{
     forward_io::{VertexOutput, FragmentOutput},
     pbr_functions::{apply_pbr_lighting, main_pass_post_lighting_processing},
+    lighting,
 }
 #endif
 
-// x: strength 0..1, y: porosity (below 0: from roughness), z, w unused.
-@group(#{MATERIAL_BIND_GROUP}) @binding(100) var<uniform> material_wetting: vec4<f32>;
+struct Wetting {
+    // x: strength 0..1, y: porosity (below 0: from roughness), z, w unused.
+    take: vec4<f32>,
+    // Painted puddles. x: source (0 none, 1 vertex colours, 2 texture), y: margin, z: least flood level, w: depth m.
+    paint: vec4<f32>,
+    // x: fixed, y: height map, z: what to show (1 channels, 2 ripples, 3 water), w unused.
+    paint_flags: vec4<f32>,
+    // Noise puddles. x, y: 1 / size along x and z, 1/m, z: seed, w: level (below 0: the weather's).
+    noise: vec4<f32>,
+    // x: present, y: height map, z, w unused.
+    noise_flags: vec4<f32>,
+}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(100) var<uniform> wetting: Wetting;
 @group(#{MATERIAL_BIND_GROUP}) @binding(101) var rain_cover_map: texture_depth_2d;
 @group(#{MATERIAL_BIND_GROUP}) @binding(102) var<storage, read> rain_surface: SurfaceParams;
+@group(#{MATERIAL_BIND_GROUP}) @binding(103) var rain_level_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(104) var rain_ripple_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(105) var rain_sampler: sampler;
+@group(#{MATERIAL_BIND_GROUP}) @binding(106) var rain_wave_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
+
+// Perceptual roughness of still water: a mirror, as far as lamps of finite size let it be one.
+const WATER_ROUGHNESS: f32 = 0.045;
+// Perceptual roughness of a water film on a rough road.
+const FILM_ROUGHNESS: f32 = 0.16;
+// Reflectance of water: F0 = 0.02 = 0.16 r².
+const WATER_REFLECTANCE: f32 = 0.357;
+// Depth over which a puddle's rim turns from film into water, m.
+const SHORE_M: f32 = 0.003;
+
+// Slopes of the water's surface, and the variance of those too small to be seen singly.
+struct WaterSurface {
+    slope: vec2<f32>,
+    variance: f32,
+}
+
+fn water_surface(p: vec3<f32>, depth: f32, exposure: f32) -> WaterSurface {
+    var out: WaterSurface;
+    let look = rain_surface.water;
+    // Waves and rings need water under them.
+    let room = smoothstep(0.001, 0.006, depth);
+    out.slope = rain_wind_slopes(look, p.xz + rain_surface.eye.xz, rain_surface.eye.w) * room;
+    if (look.ripples.w > 0.5) {
+        let ring = textureSample(rain_ripple_map, rain_sampler, p.xz * look.ripples.x + look.ripples.yz);
+        let strength = look.absorption.w * exposure * room;
+        out.slope += ring.xy * strength;
+        out.variance += max(ring.z, 0.0) * strength * strength;
+    }
+    if (look.waves.w > 0.5) {
+        let uv = (p.xz - look.waves.xy) * look.waves.z;
+        let wave = textureSample(rain_wave_map, rain_sampler, uv);
+        let inside = f32(all(uv > vec2<f32>(0.01)) && all(uv < vec2<f32>(0.99)));
+        out.slope += wave.xy * inside;
+        out.variance += max(wave.z, 0.0) * inside;
+    }
+    return out;
+}
+
+// What artists placed at a point.
+struct Placed {
+    // Water gathered, 0..1, and its depth, m.
+    water: f32,
+    depth: f32,
+    // Where rain wets and where it rings, 0..1.
+    wettable: f32,
+    ripples: f32,
+}
+
+fn placed_water(paint: vec4<f32>, height: f32, p: vec2<f32>) -> Placed {
+    var out = Placed(0.0, 0.0, 1.0, 1.0);
+    let levels = rain_surface.artist;
+    if (wetting.paint.x > 0.5) {
+        out.wettable = paint.b;
+        out.ripples = paint.r;
+        let flood = max(levels.z, wetting.paint.z);
+        var water = rain_painted_puddle_water(flood, paint.g, wetting.paint.y);
+        if (wetting.paint_flags.x > 0.5) {
+            water = 1.0 - paint.a;
+        }
+        if (wetting.paint_flags.y > 0.5) {
+            water = max(water, rain_crack_water(levels.y, height) * paint.b);
+        }
+        out.water = water;
+        out.depth = water * wetting.paint.w;
+    }
+    if (wetting.noise_flags.x > 0.5) {
+        let map = rain_puddle_noise(p * wetting.noise.xy, u32(wetting.noise.z));
+        let blended = 1.0 - (1.0 - map) * (1.0 - select(0.0, height, wetting.noise_flags.y > 0.5));
+        let level = select(levels.z, wetting.noise.w, wetting.noise.w >= 0.0);
+        let amount = max(0.0, level - blended);
+        out.depth = max(out.depth, 0.01 * amount);
+        out.water = max(out.water, smoothstep(0.0, 0.08, amount));
+    }
+    return out;
+}
 
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
-    var pbr = pbr_input_from_standard_material(in, is_front);
+    var input = in;
+    let cover = rain_surface.cover;
+    let p = in.world_position.xyz - rain_surface.eye.xyz;
+    let face = normalize(in.world_normal) * select(-1.0, 1.0, is_front);
+    let to_eye = normalize(view.world_position - in.world_position.xyz);
+
+    // Standing water bends the view of its bottom.
+    let level = smoothstep(0.85, 0.95, face.y);
+    var depth = rain_standing_water(rain_level_map, rain_surface.levels, p) * select(0.0, 1.0, level > 0.0);
+    var paint = vec4<f32>(1.0);
+    // Height of the material's relief, 1 at its top.
+    var height = 0.0;
+#ifdef VERTEX_COLORS
+    if (wetting.paint.x > 0.5 && wetting.paint.x < 1.5) {
+        paint = in.color;
+        input.color = vec4<f32>(1.0);
+    }
+#endif
+#ifdef VERTEX_UVS_A
+    if (wetting.paint.x > 1.5) {
+        paint = textureSample(rain_painted, rain_sampler, in.uv);
+    }
+    if (wetting.paint_flags.y + wetting.noise_flags.y > 0.5) {
+        height = 1.0 - textureSample(depth_map_texture, depth_map_sampler, in.uv).r;
+    }
+#endif
+    let placed = placed_water(paint, height, p.xz + rain_surface.eye.xz);
+    depth = max(depth, placed.depth);
+#ifdef VERTEX_UVS_A
+    let pixels = rain_shift_in_pixels(rain_refraction_shift(to_eye, min(depth, 0.3)), dpdx(p.xz), dpdy(p.xz), 24.0);
+    input.uv += pixels.x * dpdx(in.uv) + pixels.y * dpdy(in.uv);
+#endif
+    var pbr = pbr_input_from_standard_material(input, is_front);
 
     let normal = normalize(pbr.world_normal);
-    let p = in.world_position.xyz - rain_surface.eye.xyz;
-    let cover = rain_surface.cover;
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
-    let exposure = material_wetting.x
+    let exposure = wetting.take.x * placed.wettable
         * rain_exposure(rain_cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal))
         * rain_catch(normal.y, dot(normal, to_rain));
-    let wetness = rain_point_wetness(rain_surface.state, exposure);
+    let shore = smoothstep(-0.5 * SHORE_M, SHORE_M, depth);
+    let puddle = level * wetting.take.x * max(select(shore, 0.0, depth <= placed.depth), placed.water);
+    let wetness = max(rain_point_wetness(rain_surface.state, exposure), smoothstep(0.0, 0.5, puddle));
     // Water runs off what is steep.
-    let film = rain_point_film(rain_surface.state, exposure) * smoothstep(0.2, 0.8, normal.y);
+    let film = max(rain_point_film(rain_surface.state, exposure) * smoothstep(0.2, 0.8, normal.y), puddle);
 
     // Rough dielectrics are porous and darken; smooth ones and metals only take the film.
     let guessed = smoothstep(0.35, 0.75, pbr.material.perceptual_roughness) * (1.0 - pbr.material.metallic);
-    let porosity = select(guessed, material_wetting.y, material_wetting.y >= 0.0);
+    let porosity = select(guessed, wetting.take.y, wetting.take.y >= 0.0);
     let dry = pbr.material.base_color.rgb;
     let soaked = mix(dry, rain_wet_albedo(dry), porosity * (1.0 - pbr.material.metallic));
-    pbr.material.base_color = vec4<f32>(mix(dry, soaked, wetness), pbr.material.base_color.a);
+    var body = mix(dry, soaked, wetness);
+    // The way through the water, per metre of depth.
+    let way = 1.0 / sqrt(1.0 - (1.0 - to_eye.y * to_eye.y) / 1.776889);
+    body = mix(body, rain_through_water(body, rain_surface.water, max(depth, 0.0), way), puddle);
+    pbr.material.base_color = vec4<f32>(body, pbr.material.base_color.a);
     // Damp pores shine a little; a closed film is as smooth as drops leave it.
     let damp = mix(pbr.material.perceptual_roughness, 0.45, 0.75 * wetness);
-    let rough = mix(min(pbr.material.perceptual_roughness, damp), RAIN_FILM_ROUGHNESS, film);
-    pbr.material.perceptual_roughness = min(pbr.material.perceptual_roughness, rough);
-    // Reflectance of water: F0 = 0.02 = 0.16 r².
-    pbr.material.reflectance = mix(pbr.material.reflectance, vec3<f32>(0.357), film);
-    pbr.N = normalize(mix(pbr.N, normal, 0.75 * film));
+    var rough = mix(min(pbr.material.perceptual_roughness, damp), FILM_ROUGHNESS, film);
+    rough = min(pbr.material.perceptual_roughness, rough);
+    // Reflections: a film follows the road's grain, standing water does not.
+    let water = water_surface(p, depth, exposure * placed.ripples);
+    let flat = normalize(mix(pbr.N, normal, 0.75 * film));
+    let surface = normalize(vec3<f32>(-water.slope.x, 1.0, -water.slope.y));
+    pbr.N = normalize(mix(flat, surface, puddle));
+    // Slopes too small to be seen widen the mirror: alpha² grows by twice their variance.
+    let mirror = pow(WATER_ROUGHNESS, 4.0) + water.variance;
+    pbr.material.perceptual_roughness = clamp(mix(rough, pow(mirror, 0.25), puddle), 0.03, 1.0);
+    pbr.material.metallic *= 1.0 - puddle;
+    pbr.material.reflectance = mix(pbr.material.reflectance, vec3<f32>(WATER_REFLECTANCE), film);
 
     pbr.material.base_color = alpha_discard(pbr.material, pbr.material.base_color);
 #ifdef PREPASS_PIPELINE
     return deferred_output(in, pbr);
 #else
+    let mirrored = mirrored_radiance(p, pbr.N, to_eye, pbr.material.perceptual_roughness, film);
+    pbr.specular_occlusion *= 1.0 - mirrored.w;
     var out: FragmentOutput;
+    if (wetting.paint_flags.z > 0.5) {
+        let shown = select(select(vec3<f32>(placed.water), vec3<f32>(paint.r), wetting.paint_flags.z < 2.5), paint.rgb,
+            wetting.paint_flags.z < 1.5);
+        out.color = vec4<f32>(shown, 1.0);
+        return out;
+    }
     out.color = apply_pbr_lighting(pbr);
+    let reflected = lighting::F_AB(pbr.material.perceptual_roughness, max(dot(pbr.N, to_eye), 1e-4));
+    out.color += vec4<f32>(mirrored.xyz * mirrored.w * (0.02 * reflected.x + reflected.y), 0.0);
     out.color = main_pass_post_lighting_processing(pbr, out.color);
     return out;
 #endif
 }
 
-// Perceptual roughness of a water film under falling rain (rings widen the mirror).
-const RAIN_FILM_ROUGHNESS: f32 = 0.16;
+#ifndef PREPASS_PIPELINE
+// Exposed radiance of the mirrored view that the surface at `p` shows, and how much of its mirror image that is.
+fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughness: f32, film: f32) -> vec4<f32> {
+    let reflection = rain_surface.reflection;
+    let share = reflection.eye.w * film * (1.0 - smoothstep(0.3, 0.5, roughness)) * smoothstep(0.6, 0.9, normal.y);
+    let own = distance(reflection.eye.xyz, view.world_position) < 0.01;
+    if (share <= 0.0 || !own) {
+        return vec4<f32>(0.0);
+    }
+    // The mirror's plane is one height; what is reflected is taken to be as far away as a house across the road.
+    let towards = reflect(-to_eye, normal);
+    let clip = reflection.clip_from_eye * vec4<f32>(p + 6.0 * towards, 1.0);
+    if (clip.w <= 0.0) {
+        return vec4<f32>(0.0);
+    }
+    let uv = clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5;
+    let edge = min(min(uv.x, 1.0 - uv.x), min(uv.y, 1.0 - uv.y));
+    // A rough film blurs, more along the view than across it.
+    let spread = vec2<f32>(0.35, 1.0) * (0.5 * roughness * roughness);
+    var sum = vec3<f32>(0.0);
+    for (var i = 0; i < 5; i++) {
+        let t = 0.5 * f32(i) - 1.0;
+        let at = clamp(uv + spread * vec2<f32>(t * select(-1.0, 1.0, (i & 1) == 0), t), vec2<f32>(0.001), vec2<f32>(0.999));
+        // Fireflies: a lamp is smeared, not multiplied.
+        sum += textureSampleLevel(rain_reflection_map, rain_sampler, at, 0.0).xyz;
+    }
+    return vec4<f32>(sum / 5.0, share * smoothstep(0.0, 0.05, edge));
+}
+#endif

@@ -1,0 +1,223 @@
+//! The artists' ways to place puddles on their own meshes: painted channels (Lagarde 2013) and a noise map over a
+//! height map (Nguyenova 2021).
+
+use bevy::prelude::*;
+use rain_core::error::{ConfigError, in_range};
+
+/// Where the channels of a [`PuddlePaint`] come from.
+///
+/// Red: ripples allowed. Green: depth at which a puddle floods, 0 first, 1 never. Blue: 0 always dry, 1 wettable.
+/// Alpha: 0 puddle, 1 none, for the form that does not change. White is ground without paint.
+#[derive(Reflect, Clone, Debug, Default, PartialEq)]
+pub enum PaintSource {
+    /// The mesh's vertex colours; they no longer tint it.
+    #[default]
+    VertexColors,
+    /// A linear texture over the mesh's first texture coordinates.
+    Texture(Handle<Image>),
+}
+
+/// What the picture shows of the paint instead of the surface.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShowPaint {
+    /// Nothing: the surface itself.
+    #[default]
+    Off,
+    /// Red, green and blue as they are.
+    Channels,
+    /// Red alone: where ripples may be.
+    Ripples,
+    /// The water gathered now, white.
+    Water,
+}
+
+/// Puddles painted on an instance of a mesh. They fill by the artists' levels of the weather
+/// ([`ArtistState`](rain_core::weather::ArtistState)), in either weather mode, beside those that the ground's
+/// basins hold.
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Default)]
+pub struct PuddlePaint {
+    /// Where the channels come from.
+    pub source: PaintSource,
+    /// Puddles that are always there, placed by alpha, instead of such that grow and shrink by green.
+    pub fixed: bool,
+    /// Flood level over which a puddle's rim fills. Domain: (0, 1]. Default: 0.4.
+    pub margin: f32,
+    /// Flood level that never dries. Domain: [0, 1]. Default: 0.
+    pub least_flood: f32,
+    /// Depth of a full puddle, for its colour and waves. Units: m. Domain: [0, 1]. Default: 0.01.
+    pub depth_m: f32,
+    /// Whether the material's depth map (its parallax height) also holds water in its holes.
+    pub height_map: bool,
+    /// What to show for checking.
+    pub show: ShowPaint,
+}
+
+impl Default for PuddlePaint {
+    fn default() -> Self {
+        Self {
+            source: PaintSource::default(),
+            fixed: false,
+            margin: 0.4,
+            least_flood: 0.0,
+            depth_m: 0.01,
+            height_map: true,
+            show: ShowPaint::Off,
+        }
+    }
+}
+
+/// Puddles from a noise map in world space, screen-blended with the material's depth map, filled to the artists'
+/// puddle level: amount = max(0, level − blended), at most 10 mm deep.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default)]
+pub struct NoisePuddles {
+    /// Chooses the map.
+    pub seed: u32,
+    /// Size of the largest puddles. Units: m. Domain: [0.1, 1000]. Default: 4.
+    pub size_m: f32,
+    /// Level in place of the weather's. Domain: [0, 1]. `None`: the artists' puddle level.
+    pub level: Option<f32>,
+    /// Stretch along the world's z, as in wheel ruts: 1 round. Domain: [1, 100]. Default: 1.
+    pub stretch: f32,
+    /// Whether the material's depth map leans puddles into its lower parts.
+    pub height_map: bool,
+}
+
+impl Default for NoisePuddles {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            size_m: 4.0,
+            level: None,
+            stretch: 1.0,
+            height_map: true,
+        }
+    }
+}
+
+impl PuddlePaint {
+    /// This paint, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(&self) -> Result<&Self, ConfigError> {
+        in_range("margin", f64::from(self.margin), 1e-4, 1.0, "0.0001 to 1")?;
+        in_range("least_flood", f64::from(self.least_flood), 0.0, 1.0, "0 to 1")?;
+        in_range("depth_m", f64::from(self.depth_m), 0.0, 1.0, "0 to 1 m")?;
+        Ok(self)
+    }
+
+    /// See `Paint` in the wet material's shader.
+    pub(super) fn uniform(&self) -> [Vec4; 2] {
+        let source = match self.source {
+            PaintSource::VertexColors => 1.0,
+            PaintSource::Texture(_) => 2.0,
+        };
+        let flag = |b: bool| f32::from(u8::from(b));
+        [
+            Vec4::new(source, self.margin, self.least_flood, self.depth_m),
+            Vec4::new(flag(self.fixed), flag(self.height_map), f32::from(self.show as u8), 0.0),
+        ]
+    }
+
+    pub(super) fn texture(&self) -> Option<Handle<Image>> {
+        match &self.source {
+            PaintSource::VertexColors => None,
+            PaintSource::Texture(image) => Some(image.clone()),
+        }
+    }
+}
+
+impl NoisePuddles {
+    /// These puddles, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(&self) -> Result<&Self, ConfigError> {
+        in_range("size_m", f64::from(self.size_m), 0.1, 1000.0, "0.1 to 1000 m")?;
+        in_range("level", f64::from(self.level.unwrap_or(0.0)), 0.0, 1.0, "0 to 1")?;
+        in_range("stretch", f64::from(self.stretch), 1.0, 100.0, "1 to 100")?;
+        Ok(self)
+    }
+
+    /// See `Noise` in the wet material's shader.
+    pub(super) fn uniform(&self) -> [Vec4; 2] {
+        [
+            Vec4::new(
+                1.0 / self.size_m,
+                1.0 / (self.size_m * self.stretch),
+                // Exact in single precision.
+                (self.seed & 0xff_ffff) as f32,
+                self.level.unwrap_or(-1.0),
+            ),
+            Vec4::new(1.0, f32::from(u8::from(self.height_map)), 0.0, 0.0),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_field_is_checked_and_named() {
+        for bad in [f32::NAN, f32::INFINITY, -0.1, 1001.0] {
+            let paints = [
+                (
+                    "margin",
+                    PuddlePaint {
+                        margin: bad,
+                        ..default()
+                    },
+                ),
+                (
+                    "least_flood",
+                    PuddlePaint {
+                        least_flood: bad,
+                        ..default()
+                    },
+                ),
+                (
+                    "depth_m",
+                    PuddlePaint {
+                        depth_m: bad,
+                        ..default()
+                    },
+                ),
+            ];
+            for (name, paint) in paints {
+                let message = paint.validated().expect_err("invalid").to_string();
+                assert!(message.starts_with(name), "{message}");
+            }
+            let noises = [
+                (
+                    "size_m",
+                    NoisePuddles {
+                        size_m: bad,
+                        ..default()
+                    },
+                ),
+                (
+                    "level",
+                    NoisePuddles {
+                        level: Some(bad),
+                        ..default()
+                    },
+                ),
+                (
+                    "stretch",
+                    NoisePuddles {
+                        stretch: bad,
+                        ..default()
+                    },
+                ),
+            ];
+            for (name, noise) in noises {
+                let message = noise.validated().expect_err("invalid").to_string();
+                assert!(message.starts_with(name), "{message}");
+            }
+        }
+        assert!(PuddlePaint::default().validated().is_ok() && NoisePuddles::default().validated().is_ok());
+    }
+}

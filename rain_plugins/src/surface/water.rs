@@ -1,0 +1,224 @@
+//! How standing water looks, and where it stands.
+
+use std::sync::Arc;
+
+use bevy::math::DVec2;
+use bevy::prelude::*;
+use rain_core::error::{ConfigError, in_range};
+
+/// How water on the ground looks. Edit it at any time.
+#[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Resource, Default)]
+pub struct WaterAppearance {
+    /// Absorption of red, green and blue. Units: 1/m. Domain: [0, 1000]. Default: clear water (0.35, 0.07, 0.02).
+    pub absorption_per_m: Vec3,
+    /// Albedo of what is suspended in the water. Domain: [0, 1]. Default: loam (0.30, 0.22, 0.13).
+    pub suspended_albedo: Vec3,
+    /// Scattering by what is suspended: 0 clear, 5 a street's puddle, 200 a muddy one. Units: 1/m. Domain: [0, 1e4].
+    /// Default: 5.
+    pub turbidity_per_m: f32,
+    /// Multiple of the wind's waves. Domain: [0, 4]. Default: 1.
+    pub wave_strength: f32,
+    /// Length of the longest wind waves on puddles. Units: m. Domain: [0.02, 10]. Default: 0.25.
+    pub wave_length_m: f32,
+    /// Velocity of the wind waves; `None`: with the wind, at 0.3 m/s. Units: m/s. Domain: [−10, 10].
+    pub wave_velocity_m_s: Option<Vec2>,
+    /// Multiple of the rings that drops make. Domain: [0, 4]. Default: 1.
+    pub ripple_strength: f32,
+    /// Share of the mirrored view in reflections (where a view has one). Domain: [0, 1]. Default: 1.
+    pub reflection_strength: f32,
+}
+
+impl Default for WaterAppearance {
+    fn default() -> Self {
+        Self {
+            absorption_per_m: Vec3::new(0.35, 0.07, 0.02),
+            suspended_albedo: Vec3::new(0.30, 0.22, 0.13),
+            turbidity_per_m: 5.0,
+            wave_strength: 1.0,
+            wave_length_m: 0.25,
+            wave_velocity_m_s: None,
+            ripple_strength: 1.0,
+            reflection_strength: 1.0,
+        }
+    }
+}
+
+impl WaterAppearance {
+    /// These settings, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        let velocity = self.wave_velocity_m_s.unwrap_or_default();
+        let fields = [
+            (
+                "absorption_per_m",
+                &self.absorption_per_m.to_array()[..],
+                0.0,
+                1e3,
+                "0 to 1000 1/m",
+            ),
+            (
+                "suspended_albedo",
+                &self.suspended_albedo.to_array()[..],
+                0.0,
+                1.0,
+                "0 to 1",
+            ),
+            (
+                "turbidity_per_m",
+                &[self.turbidity_per_m][..],
+                0.0,
+                1e4,
+                "0 to 10000 1/m",
+            ),
+            ("wave_strength", &[self.wave_strength][..], 0.0, 4.0, "0 to 4"),
+            ("wave_length_m", &[self.wave_length_m][..], 0.02, 10.0, "0.02 to 10 m"),
+            (
+                "wave_velocity_m_s",
+                &velocity.to_array()[..],
+                -10.0,
+                10.0,
+                "-10 to 10 m/s",
+            ),
+            ("ripple_strength", &[self.ripple_strength][..], 0.0, 4.0, "0 to 4"),
+            (
+                "reflection_strength",
+                &[self.reflection_strength][..],
+                0.0,
+                1.0,
+                "0 to 1",
+            ),
+        ];
+        for (name, values, low, high, allowed) in fields {
+            for &value in values {
+                in_range(name, f64::from(value), low, high, allowed)?;
+            }
+        }
+        Ok(self)
+    }
+}
+
+/// Mean square slope of wind waves on a puddle. Units: none.
+///
+/// Cox & Munk 1954's clean surface, 0.003 + 0.00512 U, is that of the open sea; a puddle is short of fetch, so one
+/// tenth of it is taken (chosen by eye), and nothing below 1 m/s, where no ripple forms.
+#[must_use]
+pub fn wind_slope_variance(wind_m_s: f64) -> f64 {
+    if !(wind_m_s > 1.0) {
+        return 0.0;
+    }
+    0.1 * (0.003 + 0.00512 * wind_m_s.min(40.0)) * ((wind_m_s - 1.0) / 2.0).min(1.0)
+}
+
+/// Side of the texture that holds the levels. Units: texels.
+pub const LEVEL_TEXELS: u32 = 1024;
+
+/// A level where no water stands. Units: m.
+pub const NO_WATER_M: f32 = -1e9;
+
+/// Levels of standing water, for the picture: filled from the ground's basins, or by the app itself.
+#[derive(Resource, Clone, Debug)]
+pub struct WaterLevels {
+    /// World position (x, z) of the first cell's corner. Units: m.
+    pub corner_m: DVec2,
+    /// Edge of a cell. Units: m.
+    pub cell_m: f64,
+    /// Cells along x and z, at most [`LEVEL_TEXELS`] each.
+    pub cells: UVec2,
+    /// World height of level 0. Units: m.
+    pub base_m: f64,
+    /// Level of each cell above `base_m`, row after row (z), or [`NO_WATER_M`]. Units: m. A pool's level should reach
+    /// one cell beyond its shore.
+    pub levels_m: Arc<Vec<f32>>,
+    /// Counts changes: a new number is uploaded.
+    pub version: u64,
+}
+
+impl Default for WaterLevels {
+    fn default() -> Self {
+        Self {
+            corner_m: DVec2::ZERO,
+            cell_m: 1.0,
+            cells: UVec2::ZERO,
+            base_m: 0.0,
+            levels_m: Arc::default(),
+            version: 0,
+        }
+    }
+}
+
+impl WaterLevels {
+    /// Whether the cells fit the texture and the levels fit the cells.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        self.cells.max_element() <= LEVEL_TEXELS
+            && self.cells.element_product() as usize == self.levels_m.len()
+            && self.cell_m > 0.0
+            && self.cell_m.is_finite()
+            && self.corner_m.is_finite()
+            && self.base_m.is_finite()
+    }
+
+    /// Whether any cell holds water.
+    #[must_use]
+    pub fn any_water(&self) -> bool {
+        self.levels_m.iter().any(|&l| l > NO_WATER_M)
+    }
+}
+
+/// The textures that wet materials read.
+#[derive(Resource, Clone, Debug)]
+pub struct WaterImages {
+    /// Levels (R32Float).
+    pub levels: Handle<Image>,
+    /// Slopes of the rings that drops make, tiling the world (Rgba16Float).
+    pub ripples: Handle<Image>,
+    /// Slopes of interactive waves near the view (Rgba16Float).
+    pub waves: Handle<Image>,
+    /// The mirrored view (Rgba16Float).
+    pub reflection: Handle<Image>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_setting_is_checked_and_named() {
+        type Set = fn(&mut WaterAppearance, f32);
+        let fields: [(&str, Set, [f32; 2]); 8] = [
+            ("absorption_per_m", |w, v| w.absorption_per_m.y = v, [-0.1, 1001.0]),
+            ("suspended_albedo", |w, v| w.suspended_albedo.z = v, [-0.1, 1.1]),
+            ("turbidity_per_m", |w, v| w.turbidity_per_m = v, [-1.0, 2e4]),
+            ("wave_strength", |w, v| w.wave_strength = v, [-0.1, 5.0]),
+            ("wave_length_m", |w, v| w.wave_length_m = v, [0.0, 11.0]),
+            (
+                "wave_velocity_m_s",
+                |w, v| w.wave_velocity_m_s = Some(Vec2::splat(v)),
+                [-11.0, 11.0],
+            ),
+            ("ripple_strength", |w, v| w.ripple_strength = v, [-0.1, 5.0]),
+            ("reflection_strength", |w, v| w.reflection_strength = v, [-0.1, 1.1]),
+        ];
+        assert!(WaterAppearance::default().validated().is_ok());
+        for (name, set, [low, high]) in fields {
+            for bad in [low, high, f32::NAN, f32::INFINITY] {
+                let mut water = WaterAppearance::default();
+                set(&mut water, bad);
+                let message = water.validated().expect_err("invalid").to_string();
+                assert!(message.starts_with(name), "{message}");
+            }
+        }
+    }
+
+    #[test]
+    fn wind_ruffles_puddles_from_a_breeze_on() {
+        assert_eq!(wind_slope_variance(0.0), 0.0);
+        assert_eq!(wind_slope_variance(1.0), 0.0);
+        assert_eq!(wind_slope_variance(f64::NAN), 0.0);
+        assert!(wind_slope_variance(10.0) > wind_slope_variance(3.0));
+        assert!(wind_slope_variance(1e9) < 0.03);
+    }
+}

@@ -1,0 +1,68 @@
+// Where water stands, and where the picture of its bottom and of its surroundings is found.
+
+// Depth of the standing water above `p`, m; negative where the water table lies below it or there is none.
+//
+// Levels belong to whole cells and reach one cell beyond their pool, so the shoreline is where the ground itself
+// meets the level. What lies deeper than RAIN_DEEPEST_PUDDLE_M under it is another floor.
+fn rain_standing_water(map: texture_2d<f32>, levels: LevelMapParams, p: vec3<f32>) -> f32 {
+    let cell = floor((p.xz - levels.corner) * levels.inverse_cell);
+    if (levels.present < 0.5 || any(cell < vec2<f32>(0.0)) || any(cell >= levels.cells)) {
+        return -1.0;
+    }
+    let depth = levels.base + textureLoad(map, vec2<i32>(cell), 0).x - p.y;
+    return select(-1.0, depth, depth <= RAIN_DEEPEST_PUDDLE_M);
+}
+
+// Where on the level bottom the view ray ends that, unbent, would end at a point under `depth` of water, relative to
+// that point (x, z), m. `to_eye` is the unit vector towards the eye. Snell's law with n = 1.333.
+fn rain_refraction_shift(to_eye: vec3<f32>, depth: f32) -> vec2<f32> {
+    let up = max(to_eye.y, 0.05);
+    // Horizontal run of a metre of depth, in air and in water.
+    let air = to_eye.xz / up;
+    let water = to_eye.xz / sqrt(max(1.776889 - dot(to_eye.xz, to_eye.xz), 0.1));
+    return max(depth, 0.0) * (air - water);
+}
+
+// Weights of two texture gradients that move by `shift` on the ground: shift = a.x ddx + a.y ddy, limited to `most`
+// pixels where the ground is seen at a grazing angle.
+fn rain_shift_in_pixels(shift: vec2<f32>, ddx: vec2<f32>, ddy: vec2<f32>, most: f32) -> vec2<f32> {
+    let determinant = ddx.x * ddy.y - ddx.y * ddy.x;
+    if (abs(determinant) < 1e-12) {
+        return vec2<f32>(0.0);
+    }
+    let a = vec2<f32>(shift.x * ddy.y - shift.y * ddy.x, ddx.x * shift.y - ddx.y * shift.x) / determinant;
+    return a * min(1.0, most / max(length(a), 1e-6));
+}
+
+// Albedo of ground of albedo `bottom` seen through `depth` of water along `way` per metre of depth, down and up again:
+// absorbed by e^(-a s); what is suspended scatters (single scattering, its own albedo).
+fn rain_through_water(bottom: vec3<f32>, look: WaterLook, depth: f32, way: f32) -> vec3<f32> {
+    let path = 2.0 * depth * way;
+    let clear = exp(-(look.absorption.xyz + vec3<f32>(look.suspended.w)) * path);
+    return bottom * clear + look.suspended.xyz * (1.0 - exp(-look.suspended.w * path));
+}
+
+// Slopes (dh/dx, dh/dz) of wind waves at `p` (any origin that stays), `time` in s: five deep-water wave trains within
+// 40 degrees of the wind, each half as long and a third as steep as the one before it.
+fn rain_wind_slopes(look: WaterLook, p: vec2<f32>, time: f32) -> vec2<f32> {
+    let speed = length(look.ambient.zw);
+    if (look.ambient.x <= 0.0 || speed <= 0.0) {
+        return vec2<f32>(0.0);
+    }
+    let along = look.ambient.zw / speed;
+    var angles = array<f32, 5>(0.1, -0.52, 0.44, -0.23, 0.68);
+    var slopes = vec2<f32>(0.0);
+    var number = 6.2831853 * look.ambient.y;
+    // Mean squares 1, 1/1.7, ... of each train sum up to look.ambient.x.
+    var square = look.ambient.x * 0.4428;
+    for (var i = 0; i < 5; i++) {
+        let c = cos(angles[i]);
+        let s = sin(angles[i]);
+        let direction = vec2<f32>(c * along.x - s * along.y, s * along.x + c * along.y);
+        let phase = number * (dot(direction, p) - speed * time) + 1.7 * f32(i);
+        slopes += direction * (sqrt(2.0 * square) * cos(phase));
+        number *= 2.13;
+        square /= 1.7;
+    }
+    return slopes;
+}
