@@ -23,7 +23,15 @@ macro_rules! library {
 }
 
 /// Every library file, each after those it calls.
-pub const LIBRARIES: &[Library] = library!["hash", "drop_field", "cover", "streak", "drop_light", "wetness"];
+pub const LIBRARIES: &[Library] = library![
+    "hash",
+    "drop_field",
+    "cover",
+    "streak",
+    "drop_light",
+    "wetness",
+    "slopes"
+];
 
 /// A pass's own source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +49,7 @@ macro_rules! passes {
 }
 
 /// Every pass.
-pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask"];
+pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask", "slope_mips"];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
 /// shelters, awnings and canopies of filling stations are lower. Units: m.

@@ -10,3 +10,4 @@ pub mod cover;
 pub mod gpu_types;
 pub mod masks;
 pub mod rainfall;
+pub mod slope_mips;

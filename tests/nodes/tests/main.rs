@@ -4,6 +4,8 @@ mod cover_parity;
 mod device;
 mod field_parity;
 mod hash_parity;
+mod maps;
 mod optical_depth;
 mod shader_functions;
+mod slope_mips;
 mod wet_albedo;
