@@ -31,7 +31,8 @@ pub const LIBRARIES: &[Library] = library![
     "drop_light",
     "wetness",
     "standing_water",
-    "placed_water"
+    "placed_water",
+    "slopes"
 ];
 
 /// A pass's own source.
@@ -50,7 +51,13 @@ macro_rules! passes {
 }
 
 /// Every pass.
-pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask"];
+pub const PASSES: &[Pass] = passes![
+    "rainfall_project",
+    "rainfall_draw",
+    "mask",
+    "slope_mips",
+    "reflection_mips"
+];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
 /// shelters, awnings and canopies of filling stations are lower. Units: m.

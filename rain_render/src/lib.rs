@@ -10,3 +10,5 @@ pub mod cover;
 pub mod gpu_types;
 pub mod masks;
 pub mod rainfall;
+pub mod reflection;
+pub mod slope_mips;

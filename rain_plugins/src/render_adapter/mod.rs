@@ -28,6 +28,8 @@ use bevy::render::renderer::RenderAdapterInfo;
 use bevy::render::sync_component::SyncComponent;
 use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 
+use rain_render::reflection::REFLECTION_FORMAT;
+
 pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
 
 use crate::cover::RainCoverView;
@@ -130,9 +132,11 @@ pub(crate) fn slope_image(texels: u32) -> Image {
 
 /// What the mirrored view is kept in.
 pub(crate) fn reflection_image(size: UVec2) -> Image {
-    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
     let size = size.clamp(UVec2::splat(16), UVec2::splat(4096));
-    gpu_image("rain reflection", size.x, size.y, TextureFormat::Rgba16Float, usage)
+    let mut image = gpu_image("rain reflection", size.x, size.y, REFLECTION_FORMAT, usage);
+    image.texture_descriptor.mip_level_count = size.min_element().ilog2().min(6) + 1;
+    image
 }
 
 /// What the mirrored camera draws into: its picture is copied, because what it draws reads the copy.

@@ -16,6 +16,7 @@ use rain_render::cover::open_sky;
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams};
 use rain_render::masks::MaskGpu;
 use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
+use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
 
 use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedSurface};
 use crate::report::RainReport;
@@ -28,6 +29,8 @@ pub(super) struct RainGpu {
     pub views: HashMap<Entity, RainfallViewGpu>,
     pub masks: MaskGpu,
     pub mask_bind_groups: HashMap<Entity, wgpu::BindGroup>,
+    pub reflection: ReflectionMipsGpu,
+    pub reflection_target: Option<ReflectionMipsTarget>,
     /// Which levels of standing water the texture holds.
     levels_version: Option<u64>,
 }
@@ -45,6 +48,8 @@ impl FromWorld for RainGpu {
             views: HashMap::new(),
             masks: MaskGpu::new(device),
             mask_bind_groups: HashMap::new(),
+            reflection: ReflectionMipsGpu::new(device),
+            reflection_target: None,
             levels_version: None,
         }
     }
@@ -144,6 +149,14 @@ pub(super) fn prepare_rain(
     {
         let params = surface_params(surface.anchor);
         queue.write_buffer(&buffer.buffer, 0, bytemuck::bytes_of(&params));
+    }
+    if gpu.reflection_target.is_none()
+        && let Some(kept) = scene
+            .surface
+            .as_ref()
+            .and_then(|s| images.get(s.images.as_ref()?.reflection))
+    {
+        gpu.reflection_target = Some(gpu.reflection.bind(device, &kept.texture));
     }
     gpu.mask_bind_groups.clear();
     gpu.views.retain(|entity, _| views.contains(*entity));

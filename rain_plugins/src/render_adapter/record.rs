@@ -10,6 +10,7 @@ use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::rainfall::{encode_coverage, encode_draw, encode_project};
+use rain_render::reflection::encode_reflection_mips;
 
 use super::extract::{ExtractedRainScene, ExtractedRainView};
 use super::prepare::RainGpu;
@@ -52,6 +53,7 @@ pub(super) fn keep_reflection(
     view: ViewQuery<&ViewTarget, With<RainMirrorView>>,
     scene: Option<Res<ExtractedRainScene>>,
     images: Res<RenderAssets<GpuImage>>,
+    gpu: Res<RainGpu>,
     report: Res<RainReport>,
     mut ctx: RenderContext,
 ) {
@@ -64,11 +66,21 @@ pub(super) fn keep_reflection(
     };
     let source: &wgpu::Texture = target.main_texture();
     let kept: &wgpu::Texture = &kept.texture;
-    if source.size() != kept.size() || source.format() != kept.format() {
+    let (true, true, Some(mips)) = (
+        source.size() == kept.size(),
+        source.format() == kept.format(),
+        &gpu.reflection_target,
+    ) else {
         return;
-    }
+    };
     ctx.command_encoder()
         .copy_texture_to_texture(source.as_image_copy(), kept.as_image_copy(), kept.size());
+    let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("rain_reflection_mips"),
+        timestamp_writes: None,
+    });
+    encode_reflection_mips(&mut pass, &gpu.reflection, mips);
+    drop(pass);
     report.recorded(PassName::Reflection);
 }
 

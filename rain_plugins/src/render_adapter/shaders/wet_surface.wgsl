@@ -232,15 +232,18 @@ fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughne
     }
     let uv = clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5;
     let edge = min(min(uv.x, 1.0 - uv.x), min(uv.y, 1.0 - uv.y));
-    // A rough film blurs, more along the view than across it.
-    let spread = vec2<f32>(0.35, 1.0) * (0.5 * roughness * roughness);
+    // A rough film blurs by its lobe, at a grazing angle far more along the view than across it.
+    let size = vec2<f32>(textureDimensions(rain_reflection_map));
+    let lobe = 0.8 * roughness * roughness;
+    let across = lobe * max(to_eye.y, 0.12);
+    let level = log2(max(across * size.y, 1.0));
+    var weights = array<f32, 7>(0.07, 0.13, 0.19, 0.22, 0.19, 0.13, 0.07);
     var sum = vec3<f32>(0.0);
-    for (var i = 0; i < 5; i++) {
-        let t = 0.5 * f32(i) - 1.0;
-        let at = clamp(uv + spread * vec2<f32>(t * select(-1.0, 1.0, (i & 1) == 0), t), vec2<f32>(0.001), vec2<f32>(0.999));
-        // Fireflies: a lamp is smeared, not multiplied.
-        sum += textureSampleLevel(rain_reflection_map, rain_sampler, at, 0.0).xyz;
+    for (var i = 0; i < 7; i++) {
+        let at = uv + vec2<f32>(0.0, lobe * (f32(i) - 3.0) / 3.0);
+        let inside = clamp(at, vec2<f32>(0.002), vec2<f32>(0.998));
+        sum += weights[i] * textureSampleLevel(rain_reflection_map, rain_sampler, inside, level).xyz;
     }
-    return vec4<f32>(sum / 5.0, share * smoothstep(0.0, 0.05, edge));
+    return vec4<f32>(sum, share * smoothstep(0.0, 0.05, edge));
 }
 #endif

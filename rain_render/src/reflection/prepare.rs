@@ -1,0 +1,93 @@
+//! The pipeline, the bindings of a texture, the commands.
+
+use crate::bindings::{storage_texture_entry, texture_entry};
+use crate::compose;
+
+/// Format of the mirrored view.
+pub const REFLECTION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// Everything of the pass that lives as long as the device.
+#[derive(Debug)]
+pub struct ReflectionMipsGpu {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+/// The bindings of one texture.
+#[derive(Debug)]
+pub struct ReflectionMipsTarget {
+    levels: Vec<(wgpu::BindGroup, [u32; 2])>,
+}
+
+impl ReflectionMipsGpu {
+    /// Builds the pipeline.
+    #[must_use]
+    pub fn new(device: &wgpu::Device) -> Self {
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("rain reflection mips"),
+            entries: &[
+                texture_entry(
+                    0,
+                    compute,
+                    wgpu::TextureSampleType::Float { filterable: false },
+                    wgpu::TextureViewDimension::D2,
+                ),
+                storage_texture_entry(1, compute, REFLECTION_FORMAT),
+            ],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("rain reflection mips"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("rain reflection mips"),
+            layout: Some(&pipeline_layout),
+            module: &compose::shader(device, "reflection_mips"),
+            entry_point: Some("reduce"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Self { layout, pipeline }
+    }
+
+    /// Binds a texture of [`REFLECTION_FORMAT`] that may be bound as texture and as storage. Once for each texture,
+    /// not for each frame.
+    #[must_use]
+    pub fn bind(&self, device: &wgpu::Device, texture: &wgpu::Texture) -> ReflectionMipsTarget {
+        let view = |level| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                base_mip_level: level,
+                mip_level_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let level = |level: u32| {
+            let (source, target) = (view(level - 1), view(level));
+            let entry = |binding, view| wgpu::BindGroupEntry {
+                binding,
+                resource: wgpu::BindingResource::TextureView(view),
+            };
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("rain reflection mips"),
+                layout: &self.layout,
+                entries: &[entry(0, &source), entry(1, &target)],
+            });
+            let size = [texture.width(), texture.height()].map(|side| (side >> level).max(1).div_ceil(8));
+            (group, size)
+        };
+        ReflectionMipsTarget {
+            levels: (1..texture.mip_level_count()).map(level).collect(),
+        }
+    }
+}
+
+/// Fills all levels below the finest.
+pub fn encode_reflection_mips(pass: &mut wgpu::ComputePass, gpu: &ReflectionMipsGpu, target: &ReflectionMipsTarget) {
+    pass.set_pipeline(&gpu.pipeline);
+    for (group, [x, y]) in &target.levels {
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups(*x, *y, 1);
+    }
+}
