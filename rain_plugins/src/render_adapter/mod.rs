@@ -13,7 +13,7 @@ mod record;
 mod wet_material;
 
 use bevy::asset::RenderAssetUsages;
-use bevy::camera::RenderTarget;
+use bevy::camera::{Hdr, RenderTarget};
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::main_transparent_pass_3d;
 use bevy::core_pipeline::prepass::DepthPrepass;
@@ -162,6 +162,24 @@ pub(crate) fn cover_camera(texels: u32) -> impl Bundle {
         },
         Tonemapping::None,
         DepthPrepass,
+        Msaa::Off,
+    )
+}
+
+/// A camera that draws the mirrored scene, linear and exposed, before all others.
+pub(crate) fn mirror_camera(target: Handle<Image>) -> impl Bundle {
+    (
+        Name::new("rain mirror view"),
+        Camera3d::default(),
+        Camera {
+            order: -90,
+            is_active: false,
+            invert_culling: true,
+            ..default()
+        },
+        RenderTarget::from(target),
+        Hdr,
+        Tonemapping::None,
         Msaa::Off,
     )
 }

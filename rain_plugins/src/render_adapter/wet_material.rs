@@ -15,7 +15,8 @@ pub type WetMaterial = ExtendedMaterial<StandardMaterial, WetSurface>;
 /// The extension: how strongly a material takes water, and where the shader finds the state of the world.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
 pub struct WetSurface {
-    /// x: strength 0…1; y: porosity 0…1, below 0: guessed from roughness and metalness.
+    /// x: strength 0…1; y: porosity 0…1, below 0: guessed from roughness and metalness; z: 1 when the mesh's tag holds
+    /// a wetness of its own.
     #[uniform(100)]
     pub wetting: Vec4,
     /// Painted puddles: source (0 none, 1 vertex colours, 2 texture), margin, least flood level, depth m.

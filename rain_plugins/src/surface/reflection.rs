@@ -1,18 +1,16 @@
 //! The mirrored view: what level water shows of the scene.
 
 use bevy::camera::visibility::RenderLayers;
-use bevy::camera::{CameraProjection, Exposure, Hdr, RenderTarget, SubCameraView};
-use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::camera::{CameraProjection, Exposure, SubCameraView};
 use bevy::ecs::query::QueryData;
 use bevy::light::{EnvironmentMapLight, Skybox};
 use bevy::math::Vec3A;
-use bevy::pbr::DistanceFog;
 use bevy::prelude::*;
 
 use super::state::SurfaceState;
 use super::water::{NO_WATER_M, WaterAppearance, WaterLevels};
 use crate::rainfall::RainView;
-use crate::render_adapter::reflection_target;
+use crate::render_adapter::{mirror_camera, reflection_target};
 use crate::report::{PassName, RainReport, SkipReason};
 
 /// Put on a camera with [`RainView`] and a perspective projection: wet ground mirrors the scene itself, not only the
@@ -182,18 +180,7 @@ pub(super) fn aim_mirror(
         let target = image_assets.add(reflection_target(size.0));
         commands.spawn((
             RainMirrorView,
-            Name::new("rain mirror view"),
-            Camera3d::default(),
-            Camera {
-                order: -90,
-                is_active: false,
-                invert_culling: true,
-                ..default()
-            },
-            RenderTarget::from(target),
-            Hdr,
-            Tonemapping::None,
-            Msaa::Off,
+            mirror_camera(target),
             transform,
             Projection::custom(projection),
         ));

@@ -4,6 +4,7 @@
     pbr_fragment::pbr_input_from_standard_material,
     pbr_functions::alpha_discard,
     pbr_bindings::{depth_map_texture, depth_map_sampler},
+    mesh_functions::get_tag,
     mesh_view_bindings::view,
 }
 #import rain::surface::{
@@ -25,7 +26,8 @@
 #endif
 
 struct Wetting {
-    // x: strength 0..1, y: porosity (below 0: from roughness), z, w unused.
+    // x: strength 0..1, y: porosity (below 0: from roughness), z: 1 when the mesh's tag holds a wetness of its own,
+    // w unused.
     take: vec4<f32>,
     // Painted puddles. x: source (0 none, 1 vertex colours, 2 texture), y: margin, z: least flood level, w: depth m.
     paint: vec4<f32>,
@@ -165,9 +167,15 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         * rain_catch(normal.y, dot(normal, to_rain));
     let shore = smoothstep(-0.5 * SHORE_M, SHORE_M, depth);
     let puddle = level * wetting.take.x * max(select(shore, 0.0, depth <= placed.depth), placed.water);
-    let wetness = max(rain_point_wetness(rain_surface.state, exposure), smoothstep(0.0, 0.5, puddle));
+    // Wetness of the pores and share under a film.
+    var wet = vec2<f32>(rain_point_wetness(rain_surface.state, exposure), rain_point_film(rain_surface.state, exposure));
+    if (wetting.take.z > 0.5) {
+        // A thing that moves carries its water with it, under cover too.
+        wet = unpack2x16unorm(get_tag(in.instance_index)) * wetting.take.x * rain_catch(normal.y, dot(normal, to_rain));
+    }
+    let wetness = max(wet.x, smoothstep(0.0, 0.5, puddle));
     // Water runs off what is steep.
-    let film = max(rain_point_film(rain_surface.state, exposure) * smoothstep(0.2, 0.8, normal.y), puddle);
+    let film = max(wet.y * smoothstep(0.2, 0.8, normal.y), puddle);
 
     // Rough dielectrics are porous and darken; smooth ones and metals only take the film.
     let guessed = smoothstep(0.35, 0.75, pbr.material.perceptual_roughness) * (1.0 - pbr.material.metallic);
