@@ -12,10 +12,13 @@
 //! | `wet_albedo.rs` | how much darker a soaked body is |
 //! | `wet_roughness.rs` | how smooth a film makes it |
 //! | `water_colour.rs` | what clear and muddy water leave of the light |
+//! | `basins/` | hollows that fill, spill and merge |
+//! | `ground/` | all of it on a grid over a scene |
 //! | `artist_look.rs` | the source systems' own rules for wet looks |
 
 pub mod artist_look;
 pub mod basins;
+pub mod ground;
 pub mod height_field;
 
 mod film_step;

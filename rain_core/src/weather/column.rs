@@ -66,13 +66,13 @@ impl ColumnLedger {
 /// The water of one surface. Starts dry.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceColumn {
-    pores: Store,
-    film: Store,
-    rain: Store,
-    evaporated: Store,
-    infiltrated: Store,
-    drained: Store,
-    tau: f64,
+    pub(crate) pores: Store,
+    pub(crate) film: Store,
+    pub(crate) rain: Store,
+    pub(crate) evaporated: Store,
+    pub(crate) infiltrated: Store,
+    pub(crate) drained: Store,
+    pub(crate) tau: f64,
 }
 
 /// One interval's constants, in mm and s.
@@ -125,6 +125,16 @@ impl SurfaceColumn {
             drained: Store::new(l.drained_mm),
             tau: l.horton_time_s,
         })
+    }
+
+    /// A column with this water and an empty ledger.
+    pub(crate) fn holding(pores_mm: f64, film_mm: f64, horton_time_s: f64) -> Self {
+        Self {
+            pores: Store::new(pores_mm),
+            film: Store::new(film_mm),
+            tau: horton_time_s,
+            ..Self::default()
+        }
     }
 
     /// Water in the pores. Units: mm. Domain: [0, pore capacity].

@@ -87,7 +87,7 @@ impl Infiltration {
     }
 
     /// The curve in mm/s and s.
-    pub(super) fn curve(&self) -> HortonCurve {
+    pub(crate) fn curve(&self) -> HortonCurve {
         HortonCurve {
             floor: self.final_mm_h / 3600.0,
             extra: (self.initial_mm_h - self.final_mm_h) / 3600.0,
@@ -102,7 +102,7 @@ const MAX_DECAYS: f64 = 30.0;
 
 /// Horton's curve in mm and s; τ in s.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct HortonCurve {
+pub(crate) struct HortonCurve {
     /// f_c, mm/s.
     pub floor: f64,
     /// f₀ − f_c, mm/s.
@@ -115,7 +115,7 @@ pub(super) struct HortonCurve {
 
 impl HortonCurve {
     /// Capacity at τ, mm/s.
-    pub(super) fn capacity(&self, tau: f64) -> f64 {
+    pub(crate) fn capacity(&self, tau: f64) -> f64 {
         if self.extra == 0.0 {
             self.floor
         } else {
@@ -124,7 +124,7 @@ impl HortonCurve {
     }
 
     /// What infiltrates at capacity from τ to τ + t, mm.
-    pub(super) fn depth(&self, tau: f64, t: f64) -> f64 {
+    pub(crate) fn depth(&self, tau: f64, t: f64) -> f64 {
         let mut depth = self.floor * t;
         if self.extra != 0.0 {
             depth += self.extra * ops::exp(-self.decay * tau) * -ops::exp_m1(-self.decay * t) / self.decay;
@@ -133,7 +133,7 @@ impl HortonCurve {
     }
 
     /// The τ ≥ `tau` at which the capacity has fallen to `rate`, if it ever does.
-    pub(super) fn tau_at(&self, tau: f64, rate: f64) -> Option<f64> {
+    pub(crate) fn tau_at(&self, tau: f64, rate: f64) -> Option<f64> {
         if rate >= self.capacity(tau) {
             return Some(tau);
         }
@@ -146,7 +146,7 @@ impl HortonCurve {
     /// The time t with depth(τ, t) = `depth`, for a depth > 0 that is reached at capacity > 0.
     ///
     /// The depth is concave in t, so Newton from below rises to the root without passing it.
-    pub(super) fn time_for(&self, tau: f64, depth: f64) -> f64 {
+    pub(crate) fn time_for(&self, tau: f64, depth: f64) -> f64 {
         let mut t = depth / self.capacity(tau);
         for _ in 0..64 {
             let step = (depth - self.depth(tau, t)) / self.capacity(tau + t);
@@ -159,12 +159,12 @@ impl HortonCurve {
     }
 
     /// τ after `t` more, kept where the curve still has digits.
-    pub(super) fn advanced(&self, tau: f64, t: f64) -> f64 {
+    pub(crate) fn advanced(&self, tau: f64, t: f64) -> f64 {
         (tau + t).min(MAX_DECAYS / self.decay)
     }
 
     /// τ after `t` without infiltration.
-    pub(super) fn recovered(&self, tau: f64, t: f64) -> f64 {
+    pub(crate) fn recovered(&self, tau: f64, t: f64) -> f64 {
         if tau == 0.0 || self.recovery == 0.0 {
             return tau;
         }

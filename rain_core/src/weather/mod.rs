@@ -22,7 +22,7 @@ mod conditions;
 mod evaporation;
 mod film_course;
 mod film_flow;
-mod horton;
+pub(crate) mod horton;
 mod hyetograph;
 mod preset;
 pub(crate) mod store;

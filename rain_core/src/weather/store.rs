@@ -51,6 +51,13 @@ impl Store {
         excess
     }
 
+    /// This many times as much.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        let mut scaled = Self::new(self.high * factor);
+        scaled.add(self.low * factor);
+        scaled
+    }
+
     /// The negative.
     pub(crate) fn negated(self) -> Self {
         Self {

@@ -316,7 +316,8 @@ impl Basins {
 
     /// The leaf whose water may stand on the cell: as [`Self::leaf_at`], but none for hollows that were too shallow to
     /// be kept.
-    pub(super) fn wettable_leaf_at(&self, cell: usize) -> Option<u32> {
+    #[must_use]
+    pub fn wettable_leaf_at(&self, cell: usize) -> Option<u32> {
         self.labels.get(cell).copied().filter(|label| label & DRY == 0)
     }
 

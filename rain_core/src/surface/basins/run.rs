@@ -72,7 +72,7 @@ impl BasinForcing {
 #[derive(Debug, Clone)]
 pub struct BasinRun {
     pub(super) basins: Arc<Basins>,
-    pub(super) state: BasinState,
+    pub(in crate::surface) state: BasinState,
     pub(super) forcing: BasinForcing,
     /// Share of the rain that reaches each leaf; of a parent the mean over the part of its catchment that lies above
     /// its children's brim.
@@ -196,6 +196,11 @@ impl BasinRun {
         self.still
     }
 
+    /// Forgets that nothing changed: the next step is worked out whatever came before, as after a restored state.
+    pub(in crate::surface) fn rouse(&mut self) {
+        self.still = false;
+    }
+
     /// Share of rain and runoff that reaches the catchment of each basin without children (roofs, trees), by basin;
     /// what is given for others does not count. Units: none. Domain: [0, 10]. Default: 1.
     ///
@@ -283,6 +288,28 @@ impl BasinRun {
                 .depth_m(self.state.volumes[pool as usize].total());
             self.basins.basins()[pool as usize].bottom_m + depth
         })
+    }
+
+    /// Level of the pool that holds each basin, NaN where a basin is several pools; returns whether any holds water.
+    /// Units: m. Fills as much of `out` as there are basins.
+    pub fn levels_into(&self, out: &mut [f64]) -> bool {
+        let mut any = false;
+        // Parents have higher numbers than their children.
+        for index in (0..self.basins.basins().len().min(out.len())).rev() {
+            let basin = &self.basins.basins()[index];
+            out[index] = if !self.state.united[index] {
+                f64::NAN
+            } else if let Some(parent) = basin.parent
+                && self.state.united[parent as usize]
+            {
+                out[parent as usize]
+            } else {
+                let volume = self.state.volumes[index].total();
+                any |= volume > 0.0;
+                basin.bottom_m + self.basins.curve(index as u32).depth_m(volume)
+            };
+        }
+        any
     }
 
     /// Level of the pool that would cover a cell; none where water runs off the map. Units: m.

@@ -13,25 +13,25 @@ use crate::weather::store::Store;
 #[serde(deny_unknown_fields)]
 pub struct BasinState {
     /// Water of each basin that is a pool of its own at present.
-    pub(super) volumes: Vec<Store>,
+    pub(in crate::surface) volumes: Vec<Store>,
     /// Whether a basin's children are one pool (always, where there are none).
-    pub(super) united: Vec<bool>,
+    pub(in crate::surface) united: Vec<bool>,
     /// Whether it stands at its spill level.
-    pub(super) full: Vec<bool>,
-    pub(super) totals: Totals,
+    pub(in crate::surface) full: Vec<bool>,
+    pub(in crate::surface) totals: Totals,
 }
 
 /// All water that came and went.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Totals {
-    pub(super) rain: Store,
-    pub(super) added: Store,
-    pub(super) evaporated: Store,
-    pub(super) infiltrated: Store,
-    pub(super) drained: Store,
-    pub(super) left: Store,
-    pub(super) removed: Store,
+pub(in crate::surface) struct Totals {
+    pub(in crate::surface) rain: Store,
+    pub(in crate::surface) added: Store,
+    pub(in crate::surface) evaporated: Store,
+    pub(in crate::surface) infiltrated: Store,
+    pub(in crate::surface) drained: Store,
+    pub(in crate::surface) left: Store,
+    pub(in crate::surface) removed: Store,
 }
 
 /// All water since the start. Units: m³.
@@ -57,9 +57,23 @@ pub struct BasinLedger {
     pub residual_relative: f64,
 }
 
+impl Totals {
+    pub(in crate::surface) fn stores(&self) -> [Store; 7] {
+        [
+            self.rain,
+            self.added,
+            self.evaporated,
+            self.infiltrated,
+            self.drained,
+            self.left,
+            self.removed,
+        ]
+    }
+}
+
 impl BasinState {
     /// Dry basins.
-    pub(super) fn dry(basins: &Basins) -> Self {
+    pub(in crate::surface) fn dry(basins: &Basins) -> Self {
         let count = basins.basins().len();
         Self {
             volumes: vec![Store::default(); count],
@@ -70,13 +84,13 @@ impl BasinState {
     }
 
     /// Whether the basin is a pool of its own: its children are one, and it is not part of its parent.
-    pub(super) fn is_pool(&self, basins: &Basins, basin: u32) -> bool {
+    pub(in crate::surface) fn is_pool(&self, basins: &Basins, basin: u32) -> bool {
         let above = basins.basins()[basin as usize].parent;
         self.united[basin as usize] && above.is_none_or(|above| !self.united[above as usize])
     }
 
     /// The pool of which a leaf is part.
-    pub(super) fn pool_of(&self, basins: &Basins, leaf: u32) -> u32 {
+    pub(in crate::surface) fn pool_of(&self, basins: &Basins, leaf: u32) -> u32 {
         let mut at = leaf;
         loop {
             let basin = &basins.basins()[at as usize];
@@ -94,7 +108,7 @@ impl BasinState {
     }
 
     /// All amounts.
-    pub(super) fn ledger(&self, basins: &Basins) -> BasinLedger {
+    pub(in crate::surface) fn ledger(&self, basins: &Basins) -> BasinLedger {
         let mut stored = Store::default();
         for basin in 0..self.volumes.len() as u32 {
             if self.is_pool(basins, basin) {
@@ -129,7 +143,7 @@ impl BasinState {
     }
 
     /// Whether this can be the state of these basins.
-    pub(super) fn validated(self, basins: &Basins) -> Result<Self, ConfigError> {
+    pub(in crate::surface) fn validated(self, basins: &Basins) -> Result<Self, ConfigError> {
         let count = basins.basins().len();
         for (field, length) in [
             ("volumes.len()", self.volumes.len()),

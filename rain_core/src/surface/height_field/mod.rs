@@ -35,6 +35,7 @@ pub use gltf::{GltfImport, GltfProblem};
 #[cfg(feature = "import")]
 pub use png::PngProblem;
 pub use triangles::{LeftOutTriangles, TriangleRaster};
+pub(super) use triangles::{for_each_cell, usable};
 
 /// Most cells along one side.
 pub const MAX_SIDE_CELLS: usize = 1 << 16;

@@ -48,7 +48,7 @@ pub struct TriangleRaster {
 }
 
 /// Whether the corners may be used at all.
-pub(super) fn usable(corners: &[DVec3; 3]) -> bool {
+pub(in crate::surface) fn usable(corners: &[DVec3; 3]) -> bool {
     corners
         .iter()
         .all(|c| c.is_finite() && c.abs().max_element() <= MAX_COORDINATE_M)
@@ -77,57 +77,14 @@ impl TriangleRaster {
     /// # Errors
     /// When it lies over the grid and reaches more than 65536 cells from its corner.
     pub fn add(&mut self, corners: [DVec3; 3]) -> Result<(), HeightFieldError> {
-        if !usable(&corners) {
-            self.left_out.not_finite += 1;
-            return Ok(());
-        }
-        let [ox, oz] = self.frame.origin();
-        let (cell, [nx, nz]) = (self.frame.cell_m(), self.frame.cells());
-        let x = corners.map(|c| (c.x - ox) / cell);
-        let z = corners.map(|c| (c.z - oz) / cell);
-        let beside = |v: [f64; 3], n: usize| v.iter().all(|v| *v < 0.0) || v.iter().all(|v| *v > n as f64);
-        if beside(x, nx) || beside(z, nz) {
-            self.left_out.outside += 1;
-            return Ok(());
-        }
-        let widest = (MAX_SPAN / UNITS_PER_CELL) as f64;
-        let reach = x.iter().chain(&z).fold(0.0, |far: f64, v| far.max(v.abs()));
-        let spans = [x, z].map(|v| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]));
-        if reach > 2.0 * widest || spans[0] > widest || spans[1] > widest {
-            return Err(HeightFieldError::TooWide { cells: reach });
-        }
-        let fixed = |v: [f64; 3]| v.map(|v| (v * UNITS_PER_CELL as f64).round() as i64);
-        let Some((triangle, clockwise)) = FixedTriangle::oriented(fixed(x), fixed(z), corners.map(|c| c.y)) else {
-            self.left_out.not_up += 1;
-            return Ok(());
-        };
-        // From above, x to the right and z down the page: what is clockwise in (x, z) faces up.
-        if !clockwise {
-            self.left_out.not_up += 1;
-            return Ok(());
-        }
-        let [a, b, c] = corners;
-        let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        let normal = (b - a).cross(c - a);
-        let (slope_x, slope_z) = (-normal.x / normal.y, -normal.z / normal.y);
-        let frame = &self.frame;
         let heights = &mut self.heights;
-        let centre = UNITS_PER_CELL / 2;
-        triangle.for_each_centre([centre, centre], UNITS_PER_CELL, [nx, nz], |column, row, w| {
-            let [px, pz] = frame.centre_m(column, row);
-            let mut y = a.y + slope_x * (px - a.x) + slope_z * (pz - a.z);
-            if !y.is_finite() {
-                // Rounded to facing up from standing upright: the plane has no height here.
-                y = triangle.height(w);
-            }
-            let y = y.clamp(low, high) + 0.0;
-            let cell = &mut heights[row * nx + column];
+        for_each_cell(&self.frame, &corners, &mut self.left_out, |cell, y| {
+            let cell = &mut heights[cell];
             // A hole loses against anything.
             if cell.is_nan() || y > *cell {
                 *cell = y;
             }
-        });
-        Ok(())
+        })
     }
 
     /// What was not drawn so far.
@@ -143,6 +100,62 @@ impl TriangleRaster {
     pub fn finish(self) -> Result<HeightField, HeightFieldError> {
         HeightField::new(self.frame, self.heights)
     }
+}
+
+/// Calls `visit(cell, height)` for each cell whose centre the triangle covers, or counts why there is none.
+///
+/// # Errors
+/// When it lies over the grid and reaches more than 65536 cells from its corner.
+pub(in crate::surface) fn for_each_cell(
+    frame: &GridFrame,
+    corners: &[DVec3; 3],
+    left_out: &mut LeftOutTriangles,
+    mut visit: impl FnMut(usize, f64),
+) -> Result<(), HeightFieldError> {
+    if !usable(corners) {
+        left_out.not_finite += 1;
+        return Ok(());
+    }
+    let [ox, oz] = frame.origin();
+    let (cell, [nx, nz]) = (frame.cell_m(), frame.cells());
+    let x = corners.map(|c| (c.x - ox) / cell);
+    let z = corners.map(|c| (c.z - oz) / cell);
+    let beside = |v: [f64; 3], n: usize| v.iter().all(|v| *v < 0.0) || v.iter().all(|v| *v > n as f64);
+    if beside(x, nx) || beside(z, nz) {
+        left_out.outside += 1;
+        return Ok(());
+    }
+    let widest = (MAX_SPAN / UNITS_PER_CELL) as f64;
+    let reach = x.iter().chain(&z).fold(0.0, |far: f64, v| far.max(v.abs()));
+    let spans = [x, z].map(|v| v[0].max(v[1]).max(v[2]) - v[0].min(v[1]).min(v[2]));
+    if reach > 2.0 * widest || spans[0] > widest || spans[1] > widest {
+        return Err(HeightFieldError::TooWide { cells: reach });
+    }
+    let fixed = |v: [f64; 3]| v.map(|v| (v * UNITS_PER_CELL as f64).round() as i64);
+    let Some((triangle, clockwise)) = FixedTriangle::oriented(fixed(x), fixed(z), corners.map(|c| c.y)) else {
+        left_out.not_up += 1;
+        return Ok(());
+    };
+    // From above, x to the right and z down the page: what is clockwise in (x, z) faces up.
+    if !clockwise {
+        left_out.not_up += 1;
+        return Ok(());
+    }
+    let [a, b, c] = *corners;
+    let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+    let normal = (b - a).cross(c - a);
+    let (slope_x, slope_z) = (-normal.x / normal.y, -normal.z / normal.y);
+    let centre = UNITS_PER_CELL / 2;
+    triangle.for_each_centre([centre, centre], UNITS_PER_CELL, [nx, nz], |column, row, w| {
+        let [px, pz] = frame.centre_m(column, row);
+        let mut y = a.y + slope_x * (px - a.x) + slope_z * (pz - a.z);
+        if !y.is_finite() {
+            // Rounded to facing up from standing upright: the plane has no height here.
+            y = triangle.height(w);
+        }
+        visit(row * nx + column, y.clamp(low, high) + 0.0);
+    });
+    Ok(())
 }
 
 /// Bounds in (x, z) of the triangles that face up.
