@@ -30,7 +30,8 @@ pub const LIBRARIES: &[Library] = library![
     "streak",
     "drop_light",
     "wetness",
-    "slopes"
+    "slopes",
+    "waves"
 ];
 
 /// A pass's own source.
@@ -49,7 +50,7 @@ macro_rules! passes {
 }
 
 /// Every pass.
-pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask", "slope_mips"];
+pub const PASSES: &[Pass] = passes!["rainfall_project", "rainfall_draw", "mask", "slope_mips", "waves"];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
 /// shelters, awnings and canopies of filling stations are lower. Units: m.

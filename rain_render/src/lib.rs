@@ -11,3 +11,4 @@ pub mod gpu_types;
 pub mod masks;
 pub mod rainfall;
 pub mod slope_mips;
+pub mod waves;

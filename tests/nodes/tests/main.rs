@@ -8,4 +8,5 @@ mod maps;
 mod optical_depth;
 mod shader_functions;
 mod slope_mips;
+mod waves;
 mod wet_albedo;
