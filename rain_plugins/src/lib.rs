@@ -24,7 +24,8 @@
 //! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
 //! | [`cover::CoverPlugin`] | what stops rain |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
-//! | [`surface::WetSurfacePlugin`] | wet materials |
+//! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
+//! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
 //! | [`render_adapter::RainRenderPlugin`] | the passes |
 
 pub mod cover;
@@ -35,6 +36,7 @@ pub mod report;
 pub mod scenario;
 pub mod schedule;
 pub mod surface;
+pub mod waves;
 
 use bevy::app::PluginGroupBuilder;
 use bevy::camera::CameraUpdateSystems;
@@ -56,6 +58,7 @@ impl PluginGroup for RainPlugins {
             .add(cover::CoverPlugin)
             .add(rainfall::RainfallPlugin)
             .add(surface::WetSurfacePlugin)
+            .add(waves::WavesPlugin)
     }
 }
 
@@ -92,6 +95,9 @@ pub mod prelude {
     pub use crate::surface::{
         KeepDry, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint, SurfaceWetting, WaterAppearance,
     };
-    pub use crate::{RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin};
+    pub use crate::waves::{WaterDisturber, WaveWaterSettings};
+    pub use crate::{
+        RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
+    };
     pub use rain_ecs::prelude::*;
 }

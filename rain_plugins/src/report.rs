@@ -10,6 +10,10 @@ use bevy::prelude::*;
 pub enum PassName {
     /// Depth along the rain.
     Cover,
+    /// Rings of rain on water.
+    Ripples,
+    /// Interactive water in puddles.
+    Waves,
     /// The mirrored view.
     Reflection,
     /// Streaks near the eye.
@@ -24,6 +28,8 @@ impl PassName {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Cover => "cover",
+            Self::Ripples => "ripples",
+            Self::Waves => "waves",
             Self::Reflection => "reflection",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
@@ -38,8 +44,10 @@ pub enum SkipReason {
     Dry,
     /// Nothing falls.
     NoRain,
-    /// No water to mirror anything, or the eye is under it.
+    /// No standing water; for a mirror, none ahead, or the eye is under it.
     NoWater,
+    /// Nothing moves the water, and what did has died out.
+    Calm,
     /// The view's air is closed in: no rain can be in sight.
     Indoors,
     /// Nothing that covers has moved; the kept map is used.
@@ -60,6 +68,7 @@ impl SkipReason {
             Self::Dry => "dry",
             Self::NoRain => "no rain",
             Self::NoWater => "no water",
+            Self::Calm => "calm",
             Self::Indoors => "indoors",
             Self::NothingMoved => "nothing moved",
             Self::NoView => "no view",

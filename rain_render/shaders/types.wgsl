@@ -149,3 +149,62 @@ struct MaskView {
     screen: vec4<f32>,
     surface: SurfaceParams,
 }
+
+// A step of a wave tile.
+struct WaveParams {
+    // Cells on a side, a power of two.
+    cells: u32,
+    // 1 where what leaves on one side enters on the other.
+    periodic: u32,
+    // Where cell (0, 0) is stored; what passes the end goes on at the start.
+    offset: vec2<u32>,
+    // Cells by which the tile has moved since its levels were written.
+    moved: vec2<i32>,
+    // First source and first bin of this step.
+    first_source: u32,
+    first_bin: u32,
+    // (c dt/dx)² of the fastest wave.
+    courant2: f32,
+    // Share of u - u⁻ that damping leaves in a step.
+    g: f32,
+    // Share of the height that is left after a step, and 1 over it.
+    keep: f32,
+    inverse_keep: f32,
+    // Part of the last step that is shown, 0..1.
+    blend: f32,
+    // 1 / cell, 1/m.
+    per_cell: f32,
+    // Width of the absorbing rim, cells; 0: none.
+    rim: f32,
+    // a = k dt/2 at its outer edge.
+    rim_damping: f32,
+}
+
+// A source of waves on a straight way; see SweptSource in rain_core.
+struct WaveSource {
+    // Lowest cell of its box, and number of cells.
+    low: vec2<i32>,
+    count: vec2<u32>,
+    // Start of the way from the corner of the lowest cell, cells.
+    start: vec2<f32>,
+    // Unit vector along the way.
+    along: vec2<f32>,
+    // Length of the way over the width.
+    length: f32,
+    // Cell over the width.
+    per_width: f32,
+    // Rise for each weight, m.
+    height: f32,
+    // Change of the level before for each Laplacian, m.
+    back: f32,
+}
+
+// Eight by eight cells that sources reach.
+struct WaveBin {
+    // x in the lower, z in the upper half.
+    place: u32,
+    // Its first entry in the list of sources, and how many.
+    first: u32,
+    count: u32,
+    pad: u32,
+}

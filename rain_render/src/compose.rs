@@ -32,7 +32,8 @@ pub const LIBRARIES: &[Library] = library![
     "wetness",
     "standing_water",
     "placed_water",
-    "slopes"
+    "slopes",
+    "waves"
 ];
 
 /// A pass's own source.
@@ -56,7 +57,8 @@ pub const PASSES: &[Pass] = passes![
     "rainfall_draw",
     "mask",
     "slope_mips",
-    "reflection_mips"
+    "reflection_mips",
+    "waves"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:

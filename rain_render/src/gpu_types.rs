@@ -122,6 +122,50 @@ pub struct MaskView {
     pub surface: SurfaceParams,
 }
 
+/// A step of a wave tile.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct WaveParams {
+    pub cells: u32,
+    pub periodic: u32,
+    pub offset: [u32; 2],
+    pub moved: [i32; 2],
+    pub first_source: u32,
+    pub first_bin: u32,
+    pub courant2: f32,
+    pub g: f32,
+    pub keep: f32,
+    pub inverse_keep: f32,
+    pub blend: f32,
+    pub per_cell: f32,
+    pub rim: f32,
+    pub rim_damping: f32,
+}
+
+/// A source of waves on a straight way.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct WaveSource {
+    pub low: [i32; 2],
+    pub count: [u32; 2],
+    pub start: [f32; 2],
+    pub along: [f32; 2],
+    pub length: f32,
+    pub per_width: f32,
+    pub height: f32,
+    pub back: f32,
+}
+
+/// Eight by eight cells that sources reach.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+pub struct WaveBin {
+    pub place: u32,
+    pub first: u32,
+    pub count: u32,
+    pub pad: u32,
+}
+
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
 pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
 
@@ -147,5 +191,9 @@ pub fn layouts() -> Vec<Layout> {
         layout!(ReflectionParams: clip_from_eye, eye),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, reflection),
         layout!(MaskView: eye_from_clip, screen, surface),
+        layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant2, g, keep, inverse_keep,
+            blend, per_cell, rim, rim_damping),
+        layout!(WaveSource: low, count, start, along, length, per_width, height, back),
+        layout!(WaveBin: place, first, count, pad),
     ]
 }

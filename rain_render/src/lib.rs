@@ -12,3 +12,4 @@ pub mod masks;
 pub mod rainfall;
 pub mod reflection;
 pub mod slope_mips;
+pub mod waves;

@@ -6,11 +6,11 @@ use std::sync::atomic::AtomicBool;
 use bevy::asset::AssetId;
 use bevy::image::Image;
 use bevy::light::{DirectionalLight, EnvironmentMapLight, GlobalAmbientLight};
-use bevy::math::{Mat4, Vec3, Vec4};
+use bevy::math::{DVec2, Mat4, Vec3, Vec4};
 use bevy::prelude::*;
-use bevy::render::Extract;
 use bevy::render::storage::ShaderBuffer;
 use bevy::render::sync_world::RenderEntity;
+use bevy::render::{Extract, MainWorld};
 use rain_core::rainfall::Container;
 use rain_render::cover::CoverPlacement;
 use rain_render::gpu_types::WaterLook;
@@ -20,6 +20,7 @@ use super::RainMasks;
 use crate::cover::CoverMap;
 use crate::rainfall::{RainViewFrame, ViewMotion};
 use crate::surface::{MirrorFrame, SurfaceState, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};
+use crate::waves::{Handover, PuddleWaves, RainRings};
 
 /// One camera that sees rain.
 #[derive(Component, Clone)]
@@ -79,6 +80,50 @@ pub(super) struct ExtractedSurface {
 pub(super) struct ExtractedWaterImages {
     pub levels: AssetId<Image>,
     pub reflection: AssetId<Image>,
+    pub ripples: AssetId<Image>,
+    pub waves: AssetId<Image>,
+}
+
+/// Rings and waves: this frame's work and where the tiles lie.
+#[derive(Resource, Default)]
+pub(super) struct ExtractedWaves {
+    /// Frames to be done; what is not wanted is stale.
+    pub ripples: Handover,
+    pub waves: Handover,
+    /// Side of the ripple tile. Units: m. 0: none.
+    pub ripple_side_m: f64,
+    /// Corner and side of the wave tile. Units: m.
+    pub wave_tile_m: Option<(DVec2, f64)>,
+    /// Set when the device was lost, and with it all that waved.
+    pub lost: bool,
+}
+
+/// Takes this frame's rings and waves out of the main world; the lists go back and forth.
+pub(super) fn extract_waves(mut main: ResMut<MainWorld>, mut extracted: ResMut<ExtractedWaves>) {
+    let lost = std::mem::take(&mut extracted.lost);
+    extracted.ripple_side_m = 0.0;
+    extracted.wave_tile_m = None;
+    extracted.ripples.wanted = false;
+    extracted.waves.wanted = false;
+    if let Some(mut rings) = main.get_resource_mut::<RainRings>() {
+        let rings = rings.bypass_change_detection();
+        if lost {
+            rings.lose();
+        } else {
+            std::mem::swap(&mut rings.handover, &mut extracted.ripples);
+            extracted.ripple_side_m = rings.tile().settings().side_m;
+        }
+    }
+    if let Some(mut waves) = main.get_resource_mut::<PuddleWaves>() {
+        let waves = waves.bypass_change_detection();
+        if lost {
+            waves.lose();
+        } else {
+            std::mem::swap(&mut waves.handover, &mut extracted.waves);
+            let tile = waves.tile();
+            extracted.wave_tile_m = tile.has_water().then(|| (DVec2::from(tile.corner_m()), tile.side_m()));
+        }
+    }
 }
 
 /// The material's view of the appearance and of the wind.
@@ -155,6 +200,8 @@ pub(super) fn extract_rain(
             images: images.as_ref().map(|i| ExtractedWaterImages {
                 levels: i.levels.id(),
                 reflection: i.reflection.id(),
+                ripples: i.ripples.id(),
+                waves: i.waves.id(),
             }),
             levels: levels
                 .as_ref()

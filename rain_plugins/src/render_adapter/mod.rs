@@ -17,7 +17,7 @@ use bevy::camera::{Hdr, RenderTarget};
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::main_transparent_pass_3d;
 use bevy::core_pipeline::prepass::DepthPrepass;
-use bevy::core_pipeline::schedule::Core3d;
+use bevy::core_pipeline::schedule::{Core3d, camera_driver};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
 use bevy::prelude::*;
@@ -25,6 +25,7 @@ pub(crate) use bevy::render::RenderApp;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
 use bevy::render::render_resource::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 use bevy::render::renderer::RenderAdapterInfo;
+use bevy::render::renderer::RenderGraph;
 use bevy::render::sync_component::SyncComponent;
 use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 
@@ -245,8 +246,10 @@ impl Plugin for RainRenderPlugin {
         render_app
             .insert_resource(report)
             .init_gpu_resource::<prepare::RainGpu>()
-            .add_systems(ExtractSchedule, extract::extract_rain)
+            .init_resource::<extract::ExtractedWaves>()
+            .add_systems(ExtractSchedule, (extract::extract_rain, extract::extract_waves))
             .add_systems(Render, prepare::prepare_rain.in_set(RenderSystems::PrepareBindGroups))
+            .add_systems(RenderGraph, record::water.before(camera_driver))
             .add_systems(
                 Core3d,
                 (

@@ -17,8 +17,10 @@ use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, Surf
 use rain_render::masks::MaskGpu;
 use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
 use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
+use rain_render::slope_mips::SlopeMipsGpu;
+use rain_render::waves::{WaveTileGpu, WavesGpu};
 
-use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedSurface};
+use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
 use crate::report::RainReport;
 use crate::surface::WaterLevels;
 
@@ -31,6 +33,10 @@ pub(super) struct RainGpu {
     pub mask_bind_groups: HashMap<Entity, wgpu::BindGroup>,
     pub reflection: ReflectionMipsGpu,
     pub reflection_target: Option<ReflectionMipsTarget>,
+    pub slope_mips: SlopeMipsGpu,
+    pub waves: WavesGpu,
+    pub ripple_tile: Option<WaveTileGpu>,
+    pub wave_tile: Option<WaveTileGpu>,
     /// Which levels of standing water the texture holds.
     levels_version: Option<u64>,
 }
@@ -42,6 +48,10 @@ impl FromWorld for RainGpu {
         if let Some(cover) = scene.and_then(|s| s.cover.as_ref()) {
             cover.complete.store(false, Relaxed);
         }
+        let lost = scene.is_some();
+        if let Some(mut waves) = world.get_resource_mut::<ExtractedWaves>() {
+            waves.lost |= lost;
+        }
         let device = world.resource::<RenderDevice>().wgpu_device();
         Self {
             rainfall: RainfallGpu::new(device),
@@ -50,6 +60,10 @@ impl FromWorld for RainGpu {
             mask_bind_groups: HashMap::new(),
             reflection: ReflectionMipsGpu::new(device),
             reflection_target: None,
+            slope_mips: SlopeMipsGpu::new(device),
+            waves: WavesGpu::new(device),
+            ripple_tile: None,
+            wave_tile: None,
             levels_version: None,
         }
     }
@@ -72,8 +86,37 @@ fn upload_levels(queue: &RenderQueue, levels: &WaterLevels, texture: &wgpu::Text
     );
 }
 
+/// Uploads this frame's rings and waves.
+fn prepare_waves(
+    gpu: &mut RainGpu,
+    device: &wgpu::Device,
+    queue: &RenderQueue,
+    images: &RenderAssets<GpuImage>,
+    scene: &ExtractedRainScene,
+    waves: &ExtractedWaves,
+) {
+    let Some(ids) = scene.surface.as_ref().and_then(|s| s.images) else {
+        return;
+    };
+    for (slot, id, work) in [
+        (&mut gpu.ripple_tile, ids.ripples, &waves.ripples),
+        (&mut gpu.wave_tile, ids.waves, &waves.waves),
+    ] {
+        let Some(image) = images.get(id).filter(|_| work.wanted) else {
+            continue;
+        };
+        let tile = slot.get_or_insert_with(|| WaveTileGpu::new(device, &gpu.waves, &gpu.slope_mips, &image.texture));
+        tile.prepare(device, queue, &gpu.waves, &work.frame);
+    }
+}
+
 /// What wet materials read, relative to an eye.
-fn surface_params(surface: Option<&ExtractedSurface>, cover: CoverParams, eye: Vec3) -> SurfaceParams {
+fn surface_params(
+    surface: Option<&ExtractedSurface>,
+    waves: &ExtractedWaves,
+    cover: CoverParams,
+    eye: Vec3,
+) -> SurfaceParams {
     let Some(surface) = surface else {
         return SurfaceParams {
             cover,
@@ -98,13 +141,22 @@ fn surface_params(surface: Option<&ExtractedSurface>, cover: CoverParams, eye: V
             clip_from_eye: (clip_from_world * Mat4::from_translation(eye)).to_cols_array_2d(),
             eye: at.extend(surface.mirror_strength).to_array(),
         });
+    let mut water = surface.water;
+    if waves.ripple_side_m > 0.0 {
+        let place = (origin.xz() / waves.ripple_side_m).fract_gl().as_vec2();
+        water.ripples = [(1.0 / waves.ripple_side_m) as f32, place.x, place.y, 1.0];
+    }
+    if let Some((corner, side)) = waves.wave_tile_m {
+        let corner = (corner - origin.xz()).as_vec2();
+        water.waves = [corner.x, corner.y, (1.0 / side) as f32, 1.0];
+    }
     SurfaceParams {
         eye: eye.extend(surface.time_s).to_array(),
         state: surface.state.to_array(),
         artist: surface.artist.to_array(),
         cover,
         levels,
-        water: surface.water,
+        water,
         reflection,
     }
 }
@@ -117,6 +169,7 @@ pub(super) fn prepare_rain(
     images: Res<RenderAssets<GpuImage>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
+    waves: Res<ExtractedWaves>,
     views: Query<(
         Entity,
         &ExtractedView,
@@ -135,7 +188,7 @@ pub(super) fn prepare_rain(
         (Some(placement), Some(_)) => placement.params(eye),
         _ => open_sky(),
     };
-    let surface_params = |eye: Vec3| surface_params(scene.surface.as_ref(), cover_at(eye.as_dvec3()), eye);
+    let surface_params = |eye: Vec3| surface_params(scene.surface.as_ref(), &waves, cover_at(eye.as_dvec3()), eye);
     if let Some((levels, image)) = scene.surface.as_ref().and_then(|s| {
         let image = images.get(s.images.as_ref()?.levels)?;
         Some((s.levels.as_ref()?, image))
@@ -150,6 +203,7 @@ pub(super) fn prepare_rain(
         let params = surface_params(surface.anchor);
         queue.write_buffer(&buffer.buffer, 0, bytemuck::bytes_of(&params));
     }
+    prepare_waves(gpu, device, &queue, &images, &scene, &waves);
     if gpu.reflection_target.is_none()
         && let Some(kept) = scene
             .surface

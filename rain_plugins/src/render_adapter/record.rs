@@ -12,7 +12,7 @@ use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::rainfall::{encode_coverage, encode_draw, encode_project};
 use rain_render::reflection::encode_reflection_mips;
 
-use super::extract::{ExtractedRainScene, ExtractedRainView};
+use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedWaves};
 use super::prepare::RainGpu;
 use crate::cover::RainCoverView;
 use crate::report::{PassName, RainReport};
@@ -46,6 +46,29 @@ pub(super) fn keep_cover_map(
         .complete
         .store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
     report.recorded(PassName::Cover);
+}
+
+/// Moves rings and waves on, before any view is drawn.
+pub(super) fn water(gpu: Res<RainGpu>, waves: Res<ExtractedWaves>, report: Res<RainReport>, mut ctx: RenderContext) {
+    for (tile, work, pass_name, label) in [
+        (&gpu.ripple_tile, &waves.ripples, PassName::Ripples, "rain_ripples"),
+        (&gpu.wave_tile, &waves.waves, PassName::Waves, "rain_waves"),
+    ] {
+        let Some(tile) = tile.as_ref().filter(|_| work.wanted) else {
+            continue;
+        };
+        let recorder = ctx.diagnostic_recorder();
+        let recorder = recorder.as_deref();
+        let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes: None,
+        });
+        let span = recorder.pass_span(&mut pass, label);
+        tile.encode(&mut pass, &gpu.waves, &gpu.slope_mips);
+        span.end(&mut pass);
+        drop(pass);
+        report.recorded(pass_name);
+    }
 }
 
 /// Copies the mirrored view into the texture that wet materials read.

@@ -350,6 +350,8 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
         .map(|(name, record)| {
             let spans: &[&str] = match name.as_str() {
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
+                "ripples" => &["rain_ripples"],
+                "waves" => &["rain_waves"],
                 _ => &[],
             };
             let sum = |what: &str| -> Option<f64> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy::math::DVec2;
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
+use rain_render::waves::water_depth_m;
 
 /// How water on the ground looks. Edit it at any time.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
@@ -132,6 +133,8 @@ pub struct WaterLevels {
     /// Level of each cell above `base_m`, row after row (z), or [`NO_WATER_M`]. Units: m. A pool's level should reach
     /// one cell beyond its shore.
     pub levels_m: Arc<Vec<f32>>,
+    /// Height of the ground in each cell above `base_m`, for the depth of waves; may be empty. Units: m.
+    pub ground_m: Arc<Vec<f32>>,
     /// Counts changes: a new number is uploaded.
     pub version: u64,
 }
@@ -144,6 +147,7 @@ impl Default for WaterLevels {
             cells: UVec2::ZERO,
             base_m: 0.0,
             levels_m: Arc::default(),
+            ground_m: Arc::default(),
             version: 0,
         }
     }
@@ -155,10 +159,48 @@ impl WaterLevels {
     pub fn is_valid(&self) -> bool {
         self.cells.max_element() <= LEVEL_TEXELS
             && self.cells.element_product() as usize == self.levels_m.len()
+            && (self.ground_m.is_empty() || self.ground_m.len() == self.levels_m.len())
             && self.cell_m > 0.0
             && self.cell_m.is_finite()
             && self.corner_m.is_finite()
             && self.base_m.is_finite()
+    }
+
+    /// Index of the cell that holds a world position.
+    fn cell_at(&self, x_m: f64, z_m: f64) -> Option<usize> {
+        let at = ((DVec2::new(x_m, z_m) - self.corner_m) / self.cell_m).floor();
+        let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < f64::from(self.cells.x) && at.y < f64::from(self.cells.y);
+        let cell = inside.then(|| at.y as usize * self.cells.x as usize + at.x as usize)?;
+        (cell < self.levels_m.len()).then_some(cell)
+    }
+
+    /// World height of the water's surface at a place, where water stands or is a cell away. Units: m.
+    #[must_use]
+    pub fn surface_at(&self, x_m: f64, z_m: f64) -> Option<f32> {
+        let level = self.levels_m[self.cell_at(x_m, z_m)?];
+        (level > NO_WATER_M).then(|| (self.base_m + f64::from(level)) as f32)
+    }
+
+    /// Depth of the standing water over the ground between the cells' middles; 0 is dry. Units: m.
+    #[must_use]
+    pub fn depth_at(&self, x_m: f64, z_m: f64) -> f32 {
+        let Some(cell) = self.cell_at(x_m, z_m).filter(|_| !self.ground_m.is_empty()) else {
+            return 0.0;
+        };
+        let level = self.levels_m[cell];
+        if level <= NO_WATER_M {
+            return 0.0;
+        }
+        let at = (DVec2::new(x_m, z_m) - self.corner_m) / self.cell_m - 0.5;
+        let (corner, t) = (at.floor(), at - at.floor());
+        let ground = |dx: f64, dz: f64| {
+            let column = (corner.x + dx).clamp(0.0, f64::from(self.cells.x - 1)) as usize;
+            let row = (corner.y + dz).clamp(0.0, f64::from(self.cells.y - 1)) as usize;
+            f64::from(self.ground_m[row * self.cells.x as usize + column])
+        };
+        let near = ground(0.0, 0.0) * (1.0 - t.x) + ground(1.0, 0.0) * t.x;
+        let far = ground(0.0, 1.0) * (1.0 - t.x) + ground(1.0, 1.0) * t.x;
+        water_depth_m(f64::from(level), near * (1.0 - t.y) + far * t.y)
     }
 
     /// Whether any cell holds water.

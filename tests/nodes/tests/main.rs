@@ -9,4 +9,5 @@ mod optical_depth;
 mod reflection;
 mod shader_functions;
 mod slope_mips;
+mod waves;
 mod wet_albedo;

@@ -1,0 +1,125 @@
+//! Waves on puddles near the view.
+
+use bevy::prelude::*;
+use rain_ecs::prelude::*;
+use rain_render::waves::{Disturbance, MAX_DISTURBANCES, WaveTile};
+
+use super::Handover;
+use super::disturb::{DisturberMotion, WaterDisturber};
+use super::rings::seen_ns;
+use crate::rainfall::RainView;
+use crate::report::{PassName, RainReport, SkipReason};
+use crate::surface::WaterLevels;
+
+/// How far ahead of the eye the tile's middle lies. Units: m.
+const AHEAD_M: f32 = 2.5;
+
+/// Levels are followed at most this often: they change slowly, and every change is uploaded. Units: ns.
+const REFILL_NS: u64 = 2_000_000_000;
+
+/// An eye that moves farther than this in a frame has been cut. Units: m.
+const CUT_M: f32 = 3.0;
+
+/// The tile of puddles around the view.
+#[derive(Resource, Debug)]
+pub struct PuddleWaves {
+    tile: WaveTile,
+    now_ns: Option<u64>,
+    eye: Option<Vec3>,
+    /// What moved the water this frame.
+    disturbances: Vec<Disturbance>,
+    /// Version of the levels whose depths the tile has, and when it took them.
+    filled: Option<(u64, u64)>,
+    pub(crate) handover: Handover,
+}
+
+impl PuddleWaves {
+    pub(super) fn new(tile: WaveTile) -> Self {
+        Self {
+            tile,
+            now_ns: None,
+            eye: None,
+            disturbances: Vec::new(),
+            filled: None,
+            handover: Handover::default(),
+        }
+    }
+
+    /// The tile.
+    #[must_use]
+    pub fn tile(&self) -> &WaveTile {
+        &self.tile
+    }
+
+    /// Forgets all waves: the GPU has lost them.
+    pub(crate) fn lose(&mut self) {
+        if let Ok(tile) = WaveTile::new(self.tile.settings()) {
+            self.tile = tile;
+            self.filled = None;
+        }
+    }
+}
+
+/// Follows the view, takes in what disturbs the water, and lets time pass.
+pub(super) fn move_water(
+    mut waves: ResMut<PuddleWaves>,
+    clock: Res<RainClock>,
+    levels: Res<WaterLevels>,
+    report: Res<RainReport>,
+    views: Query<(&Camera, &GlobalTransform), With<RainView>>,
+    mut disturbers: Query<(&WaterDisturber, &GlobalTransform, &mut DisturberMotion)>,
+) {
+    let waves = &mut *waves;
+    waves.handover.wanted = false;
+    let now = seen_ns(&clock);
+    let elapsed = waves.now_ns.map_or(0, |before| now.saturating_sub(before));
+    waves.now_ns = Some(now);
+    let seconds = elapsed as f32 / 1e9;
+    let found = &mut waves.disturbances;
+    found.clear();
+    let water = |x: f64, z: f64| levels.surface_at(x, z);
+    for (disturber, at, mut motion) in &mut disturbers {
+        if disturber.validated().is_err() {
+            continue;
+        }
+        let disturbance = motion.step(disturber, at.translation(), seconds, water);
+        if found.len() < MAX_DISTURBANCES {
+            found.extend(disturbance);
+        }
+    }
+    let view = views.iter().find(|(c, _)| c.is_active).map(|(_, t)| t);
+    let reason = match view {
+        None => Some(SkipReason::NoView),
+        Some(_) if !levels.any_water() => Some(SkipReason::NoWater),
+        Some(_) => None,
+    };
+    if let Some(reason) = reason {
+        report.skipped(PassName::Waves, reason);
+        waves.tile.reset();
+        return;
+    }
+    let Some(view) = view else { return };
+    let eye = view.translation();
+    if waves.eye.replace(eye).is_none_or(|before| before.distance(eye) > CUT_M) {
+        waves.tile.reset();
+    }
+    let ahead = eye + view.forward().with_y(0.0).normalize_or_zero() * AHEAD_M;
+    let depth = |x: f64, z: f64| levels.depth_at(x, z);
+    let place = [f64::from(ahead.x), f64::from(ahead.z)];
+    waves.tile.follow(place, depth);
+    let stale = waves
+        .filled
+        .is_none_or(|(version, at)| version != levels.version && now.saturating_sub(at) >= REFILL_NS);
+    if stale {
+        waves.tile.refill(depth);
+        waves.filled = Some((levels.version, now));
+    }
+    // At most as many as are taken, each checked: nothing is refused.
+    let _ = waves.tile.advance(elapsed, &waves.disturbances);
+    if waves.tile.wants_pass() {
+        waves.tile.take(&mut waves.handover.frame);
+        waves.handover.wanted = true;
+    } else {
+        report.skipped(PassName::Waves, SkipReason::Calm);
+    }
+}

@@ -1,0 +1,211 @@
+//! The host's side of the tile of rain's rings.
+
+use rain_core::error::ConfigError;
+use rain_core::hash;
+use rain_core::rainfall::{DiameterTable, DropSizes, terminal_velocity};
+use rain_core::splash::for_each_impact;
+use rain_core::waves::DropImpact;
+
+use super::calm::CalmBound;
+use super::frame::{MAX_STEPS, Plan, WaveFrame, Way};
+use super::params::{RippleSettings, Rules};
+use super::tile::{CALM_M, MAX_ADVANCE_NS};
+
+/// Largest drop: larger ones break up as they fall. Units: mm.
+const LARGEST_MM: f64 = 8.0;
+
+/// What the norms of a ring on cells may exceed those of the water by; at two cells' width they are 6 % apart.
+const MARGIN: f64 = 1.2;
+
+/// Rain on still water: each drop of the size distribution presses its ring into a tile that repeats.
+///
+/// Impacts are Poisson, hashed by seed and step: the same seed, rain and number of steps make the same water, bit for
+/// bit on one device. Wind does not change them: on level water as many drops fall as fast downwards.
+#[derive(Debug, Clone)]
+pub struct RippleTile {
+    settings: RippleSettings,
+    rules: Rules,
+    /// The rain, its drops on a square metre in a second, and their diameters.
+    sizes: Option<DropSizes>,
+    drops_per_m2_s: f64,
+    diameters: Option<DiameterTable<128>>,
+    left_ns: u64,
+    steps: u32,
+    bound: CalmBound,
+    plan: Plan,
+    depths_changed: bool,
+    still: bool,
+    asleep: bool,
+}
+
+impl RippleTile {
+    /// Still water without rain.
+    ///
+    /// # Errors
+    /// [`ConfigError::OutOfRange`] for a setting outside its domain.
+    pub fn new(settings: &RippleSettings) -> Result<Self, ConfigError> {
+        Ok(Self {
+            settings: *settings,
+            rules: settings.rules()?,
+            sizes: None,
+            drops_per_m2_s: 0.0,
+            diameters: None,
+            left_ns: 0,
+            steps: 0,
+            bound: CalmBound::default(),
+            plan: Plan::default(),
+            depths_changed: true,
+            still: false,
+            asleep: true,
+        })
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &RippleSettings {
+        &self.settings
+    }
+
+    /// The sub-step. Units: ns.
+    #[must_use]
+    pub fn step_ns(&self) -> u64 {
+        self.rules.step_ns
+    }
+
+    /// Drops above the least diameter that fall. Units: 1/(m² s).
+    #[must_use]
+    pub fn drops_per_m2_s(&self) -> f64 {
+        self.drops_per_m2_s
+    }
+
+    /// What falls from now on; nothing where no drop is large enough. Takes tens of microseconds when it has changed.
+    pub fn set_rain(&mut self, sizes: &DropSizes) {
+        if self.sizes == Some(*sizes) {
+            return;
+        }
+        self.sizes = Some(*sizes);
+        let least = self.settings.least_drop_mm;
+        let flux = sizes.flux_moment(0, least, LARGEST_MM, terminal_velocity);
+        let table = DiameterTable::on_ground(sizes, least, LARGEST_MM, terminal_velocity);
+        // Without drops there is no table.
+        self.diameters = table.ok().filter(|_| flux > 0.0);
+        self.drops_per_m2_s = if self.diameters.is_some() { flux } else { 0.0 };
+    }
+
+    /// Stills everything at once.
+    pub fn reset(&mut self) {
+        self.plan.clear();
+        self.bound = CalmBound::default();
+        self.still |= !self.asleep;
+        self.asleep = true;
+    }
+
+    /// Lets time pass under the rain. Returns the number of steps. Of more than a second, and of more than 32 steps not
+    /// yet taken, the rest is dropped. Free while it does not rain and nothing moves.
+    pub fn advance(&mut self, elapsed_ns: u64) -> u32 {
+        let total = self.left_ns + elapsed_ns.min(MAX_ADVANCE_NS);
+        self.left_ns = total % self.rules.step_ns;
+        if self.asleep && self.diameters.is_none() {
+            return 0;
+        }
+        let room = MAX_STEPS - self.plan.steps.len();
+        let steps = ((total / self.rules.step_ns) as usize).min(room);
+        for _ in 0..steps {
+            self.rain();
+            self.plan.finish(&self.rules, true);
+            self.bound.step(self.rules.courant, self.rules.keep);
+        }
+        if self.diameters.is_none() && self.bound.ever_m(self.rules.courant, self.rules.keep) < CALM_M {
+            self.reset();
+            return 0;
+        }
+        steps as u32
+    }
+
+    /// The drops of one step.
+    fn rain(&mut self) {
+        let slot = self.steps;
+        self.steps = self.steps.wrapping_add(1);
+        let Some(diameters) = &self.diameters else { return };
+        let rules = &self.rules;
+        let mean = self.drops_per_m2_s * self.settings.side_m * self.settings.side_m * rules.step_s();
+        let (plan, bound) = (&mut self.plan, &mut self.bound);
+        for_each_impact(self.settings.seed, [0, 0], slot, mean, |event| {
+            let [u, _, _] = hash::pcg3d([event.key[1], event.key[2], event.key[0]]);
+            let diameter_mm = f64::from(diameters.diameter_mm(hash::unit_f32(u)));
+            let place = event.place.map(f64::from);
+            let impact = DropImpact {
+                x_m: place[0] * self.settings.side_m,
+                z_m: place[1] * self.settings.side_m,
+                diameter_mm,
+                speed_m_s: terminal_velocity(diameter_mm),
+            };
+            let way = drop_way(rules, &impact);
+            let norm = way.width * core::f64::consts::PI.sqrt();
+            // A Laplacian with the factor F makes heights of |F/(c k)| (k s)²: the norm of a gradient. The bump's own
+            // start from rest is in `back` and adds nothing to its amplitude.
+            let push = 0.5 * impact.peak_velocity(rules.deepest_m(), way.width * rules.cell_m);
+            let rise = push * way.width * rules.cell_m / rules.speed_m_s * core::f64::consts::PI.sqrt() * way.width;
+            bound.add(MARGIN * (way.height * norm + rise), 0.0);
+            plan.push(rules, &way);
+        });
+        self.asleep = false;
+    }
+
+    /// Whether nothing moves that can be seen, and it does not rain.
+    #[must_use]
+    pub fn is_calm(&self) -> bool {
+        self.asleep && self.diameters.is_none()
+    }
+
+    /// The bound by which the tile falls asleep; no height exceeds [`CalmBound::height_m`].
+    #[must_use]
+    pub fn bound(&self) -> CalmBound {
+        self.bound
+    }
+
+    /// Whether there is anything to record.
+    #[must_use]
+    pub fn wants_pass(&self) -> bool {
+        !self.asleep || self.still
+    }
+
+    /// Hands the work since the last call over. Whatever `frame` held is gone.
+    pub fn take(&mut self, frame: &mut WaveFrame) {
+        let mut params = self.rules.params();
+        if self.still {
+            params.moved = [self.rules.cells as i32; 2];
+        }
+        params.blend = self.left_ns as f32 / self.rules.step_ns as f32;
+        frame.params = Some(params);
+        frame.settle = self.still;
+        frame.balance = false;
+        frame.depths.clear();
+        if self.depths_changed {
+            let cells = self.rules.cells as usize;
+            frame.depths.resize(cells * cells, 1.0);
+        }
+        frame.plan.clear();
+        core::mem::swap(&mut frame.plan, &mut self.plan);
+        self.depths_changed = false;
+        self.still = false;
+    }
+}
+
+/// A drop as a source that does not move: its own water, and its momentum.
+fn drop_way(rules: &Rules, impact: &DropImpact) -> Way {
+    let deepest = rules.deepest_m();
+    let width_m = impact.width_m(rules.cell_m, deepest);
+    let width = width_m / rules.cell_m;
+    let scale = rules.courant / width;
+    let bump = impact.volume_m3() / (core::f64::consts::TAU * width_m * width_m);
+    let force = 0.5 * impact.peak_velocity(deepest, width_m);
+    let at = [impact.x_m / rules.cell_m, impact.z_m / rules.cell_m];
+    Way {
+        start: at,
+        end: at,
+        width,
+        height: bump,
+        back: 0.5 * scale * scale * bump - (1.0 + rules.half_damping) * rules.step_s() * force,
+    }
+}
