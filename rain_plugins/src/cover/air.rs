@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use bevy::math::DVec2;
-use bevy::mesh::{Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
+use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::*;
 use rain_core::cover::air::{Air, AirGrid, cell_of};
 use rain_core::cover::{CoverScene, CoverSettings as CoreCoverSettings, FallSlope, OccluderId};
@@ -11,7 +11,7 @@ use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
 use rain_ecs::prelude::*;
 
 use crate::rainfall::RainView;
-use crate::surface::OriginalMaterial;
+use crate::surface::{OriginalMaterial, triangles_of};
 
 /// Whether the first active [`RainView`] stands in closed-in air; other views are not judged and draw.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -187,25 +187,4 @@ fn take_in(
         cover.update();
         s.flooded = None;
     }
-}
-
-/// World-space triangles of a mesh; `None` when it is no triangle list or its data lives on the GPU only.
-fn triangles_of(mesh: &Mesh, transform: &GlobalTransform) -> Option<Vec<[bevy::math::DVec3; 3]>> {
-    if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
-        return None;
-    }
-    let VertexAttributeValues::Float32x3(positions) = mesh.try_attribute(Mesh::ATTRIBUTE_POSITION).ok()? else {
-        return None;
-    };
-    let world: Vec<_> = positions
-        .iter()
-        .map(|p| transform.transform_point(Vec3::from_array(*p)).as_dvec3())
-        .collect();
-    let at = |i: usize| world.get(i).copied();
-    let triangle = |a: usize, b: usize, c: usize| Some([at(a)?, at(b)?, at(c)?]);
-    let corners: Vec<usize> = match mesh.try_indices().ok() {
-        Some(indices) => indices.iter().collect(),
-        None => (0..positions.len()).collect(),
-    };
-    corners.chunks_exact(3).map(|t| triangle(t[0], t[1], t[2])).collect()
 }

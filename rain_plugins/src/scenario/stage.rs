@@ -24,7 +24,8 @@ use super::run::RunError;
 use super::sky::{Cube, Handedness, SkyModel, generate};
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
-use crate::surface::{KeepDry, PlanarReflection};
+use crate::surface::{KeepDry, MovesInRain, PlanarReflection};
+use crate::waves::WaterDisturber;
 
 /// Where the pictures come from.
 #[derive(Resource, Clone)]
@@ -369,6 +370,7 @@ pub(super) fn dress(app: &mut App, scenario: &Scenario) {
         .map(|(e, v)| (e, v.wheel_prefix.clone(), v.headlights))
         .collect();
     for (vehicle, prefix, headlights) in vehicles {
+        world.entity_mut(vehicle).insert(MovesInRain);
         let mut stack = vec![vehicle];
         while let Some(entity) = stack.pop() {
             if let Some(children) = world.get::<Children>(entity) {
@@ -383,7 +385,10 @@ pub(super) fn dress(app: &mut App, scenario: &Scenario) {
             let is_wheel = world.get::<Name>(entity).is_some_and(|n| n.starts_with(&prefix));
             if is_wheel && let Some(transform) = world.get::<Transform>(entity) {
                 let rest = transform.rotation;
-                world.entity_mut(entity).insert(Wheel { vehicle, rest });
+                let scale = world.get::<GlobalTransform>(entity).map_or(1.0, |t| t.scale().x);
+                let radius_m = world.get::<OnPath>(vehicle).map_or(0.3, |v| v.wheel_radius_m as f32) * scale;
+                let disturber = WaterDisturber { radius_m, ..default() };
+                world.entity_mut(entity).insert((Wheel { vehicle, rest }, disturber));
             }
         }
     }

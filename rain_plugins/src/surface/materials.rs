@@ -7,6 +7,8 @@ use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
+use super::geometry::{HandedOver, MovesInRain, hand_over};
+use super::ground::{LevelsFromGround, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirror};
 use super::state::{SurfaceState, create_state, follow_weather};
@@ -103,11 +105,16 @@ impl Plugin for WetSurfacePlugin {
             .init_resource::<ReflectionSize>()
             .init_resource::<WaterAppearance>()
             .init_resource::<WaterLevels>()
+            .init_resource::<LevelsFromGround>()
+            .init_resource::<HandedOver>()
+            .register_type::<MovesInRain>()
             .add_systems(Startup, (create_state, create_images))
             .add_systems(
                 PostUpdate,
                 (
-                    (follow_weather, aim_mirror).chain().in_set(RainViewSystems::Surfaces),
+                    (follow_weather, follow_ground, aim_mirror)
+                        .chain()
+                        .in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
                     // once with the pipeline of one material and the bindings of the other, which stops the renderer.
                     (
@@ -124,6 +131,12 @@ impl Plugin for WetSurfacePlugin {
                         .before(AssetEventSystems),
                 )
                     .run_if(resource_exists::<SurfaceState>),
+            )
+            .add_systems(
+                PostUpdate,
+                hand_over
+                    .in_set(RainViewSystems::Surfaces)
+                    .run_if(resource_exists::<CoverField>.and_then(resource_exists::<SurfaceScene>)),
             );
     }
 }

@@ -4,12 +4,17 @@
 //! given an extended copy that reads the cover map and the weather's wetness; when all has dried the originals return.
 //! Changes that the app makes to the originals meanwhile are followed.
 
+mod geometry;
+mod ground;
 mod materials;
 mod paint;
 mod reflection;
 mod state;
 mod water;
 
+pub use geometry::MovesInRain;
+pub(crate) use geometry::triangles_of;
+pub use ground::LevelsFromGround;
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
 pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
 pub use reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize};

@@ -1,0 +1,113 @@
+//! The simulation's ground in the picture: levels of its puddles, and the ground under the view.
+
+use std::sync::Arc;
+
+use bevy::math::DVec2;
+use bevy::prelude::*;
+use rain_ecs::prelude::*;
+
+use super::state::SurfaceState;
+use super::water::{LEVEL_TEXELS, NO_WATER_M, WaterLevels};
+use crate::rainfall::RainView;
+
+/// Where the levels come from.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LevelsFromGround {
+    /// Build, level version and first cell that the levels show.
+    shown: Option<(u64, u64, UVec2)>,
+}
+
+/// The window of a larger ground moves by this many cells at once.
+const SNAP: u32 = 64;
+
+/// First cell and number of cells of what is shown along one axis, around cell `eye`.
+fn window(cells: u32, eye: f64) -> (u32, u32) {
+    if cells <= LEVEL_TEXELS {
+        return (0, cells);
+    }
+    let first = (eye - f64::from(LEVEL_TEXELS / 2)).clamp(0.0, f64::from(cells - LEVEL_TEXELS)) as u32;
+    (first / SNAP * SNAP, LEVEL_TEXELS)
+}
+
+/// Shows the ground's puddles when their levels have changed.
+pub(super) fn follow_ground(
+    mut levels: ResMut<WaterLevels>,
+    mut shown: ResMut<LevelsFromGround>,
+    mut surface: ResMut<SurfaceState>,
+    mut all: Local<Vec<f32>>,
+    ground: Option<Res<SurfaceGround>>,
+    views: Query<(&GlobalTransform, &Camera), With<RainView>>,
+) {
+    let eye = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation());
+    let built = ground.as_ref().and_then(|g| Some((g.ground()?, g.rebuilds())));
+    let Some((ground, builds)) = built else {
+        if shown.shown.take().is_some() {
+            *levels = WaterLevels {
+                version: levels.version + 1,
+                ..default()
+            };
+        }
+        return;
+    };
+    let frame = ground.frame();
+    let [nx, nz] = frame.cells();
+    let (corner, cell_m) = (DVec2::from(frame.origin()), frame.cell_m());
+    let at = eye.unwrap_or(surface.anchor).xz().as_dvec2();
+    let cell = ((at - corner) / cell_m).floor();
+    let (first_x, columns) = window(nx as u32, cell.x);
+    let (first_z, rows) = window(nz as u32, cell.y);
+    let first = UVec2::new(first_x, first_z);
+    surface.ground_m = ground
+        .cell_at(at.x, at.y)
+        .map(|i| ground.ground_heights()[i])
+        .and_then(|height| {
+            let height = (ground.base_height_m() + f64::from(height)) as f32;
+            height.is_finite().then_some(height)
+        });
+    let now = (builds, ground.level_version(), first);
+    if shown.shown == Some(now) {
+        return;
+    }
+    let same_place = shown.shown.is_some_and(|(b, _, f)| (b, f) == (builds, first));
+    shown.shown = Some(now);
+    all.resize(nx * nz, NO_WATER_M);
+    ground.levels(&mut all);
+    let cut = |values: &[f32]| -> Arc<Vec<f32>> {
+        let row = |z: usize| {
+            let start = (first_z as usize + z) * nx + first_x as usize;
+            values[start..start + columns as usize].iter().copied()
+        };
+        Arc::new((0..rows as usize).flat_map(row).collect())
+    };
+    levels.levels_m = cut(&all);
+    if !same_place {
+        levels.ground_m = cut(ground.ground_heights());
+        levels.corner_m = corner + first.as_dvec2() * cell_m;
+        levels.cell_m = cell_m;
+        levels.cells = UVec2::new(columns, rows);
+        levels.base_m = ground.base_height_m();
+    }
+    levels.version += 1;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_holds_the_eye_and_stays_inside() {
+        assert_eq!(window(300, 5.0), (0, 300));
+        for eye in [-1e9, 0.0, 600.0, 1500.0, 2999.0, 1e9, f64::NAN] {
+            let (first, cells) = window(3000, eye);
+            assert!(cells == LEVEL_TEXELS && first + cells <= 3000, "{eye}: {first}");
+            if (0.0..3000.0).contains(&eye) {
+                let place = eye - f64::from(first);
+                assert!(
+                    (0.0..f64::from(LEVEL_TEXELS) + f64::from(SNAP)).contains(&place),
+                    "{eye}: {first}"
+                );
+            }
+        }
+        assert_eq!(window(3000, 1500.0).0 % SNAP, 0);
+    }
+}
