@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 use crate::rainfall::MAX_INTENSITY_MM_H;
 
@@ -165,6 +165,38 @@ pub struct ArtistState {
     pub puddles: f64,
     /// Dry time since the rain, no longer counted beyond the drying delay. Units: s.
     pub dry_for_s: f64,
+}
+
+impl ArtistSettings {
+    /// How fast the wet level rises. Units: 1/s. `intensity_mm_h` as in [`relative_intensity`].
+    #[must_use]
+    pub fn wetness_rise_per_s(&self, intensity_mm_h: f64) -> f64 {
+        let relative = relative_intensity(intensity_mm_h);
+        if relative > RAINING {
+            through_rows(relative, ROWS, self.wetness.rise_per_s)
+        } else {
+            0.0
+        }
+    }
+
+    /// Wet level of a moving object after `dt_s`: w + (e·rise − (1 − e)·fall) dt within [0, target], without rain
+    /// w − fall dt (digest E: E43–E45, N11). Units: none.
+    ///
+    /// `wetness` and the share `exposure` of the rain that reaches it are held in [0, 1], `dt_s` in [0, 1e9]; what is
+    /// not a number counts as 0. An object that comes from a wetter setting keeps what is above the target until it
+    /// dries. Error: rounding; constant e over the step.
+    #[must_use]
+    pub fn object_wetness(&self, wetness: f64, exposure: f64, intensity_mm_h: f64, dt_s: f64) -> f64 {
+        let (w, e, dt) = (
+            clamped(wetness, 0.0, 1.0),
+            clamped(exposure, 0.0, 1.0),
+            clamped(dt_s, 0.0, 1e9),
+        );
+        let rise = self.wetness_rise_per_s(intensity_mm_h);
+        let e = if rise > 0.0 { e } else { 0.0 };
+        let after = w + (e * rise - (1.0 - e) * self.wetness.fall_per_s) * dt;
+        after.clamp(0.0, self.wetness.target.max(w))
+    }
 }
 
 impl ArtistState {
