@@ -30,7 +30,7 @@ pub mod weather;
 use bevy_app::{App, Plugin};
 
 pub use clock::{RainClock, RainClockPlugin};
-pub use cover::{CoverField, CoverPlugin};
+pub use cover::{CoverField, CoverFieldPlugin};
 pub use error::RainConfigError;
 pub use queries::RainQueries;
 pub use rainfall::{RainfallField, RainfallFieldPlugin};
@@ -38,14 +38,14 @@ pub use schedule::{RainSystems, RainTick};
 pub use seed::RainSeed;
 pub use snapshot::RainSnapshot;
 pub use state_hash::state_hash;
-pub use surface::SurfacePlugin;
+pub use surface::SurfaceGroundPlugin;
 pub use weather::WeatherPlugin;
 
 /// What an application usually names.
 pub mod prelude {
     pub use crate::RainEcsPlugin;
     pub use crate::clock::{RainClock, RainClockPlugin};
-    pub use crate::cover::{CoverField, CoverPlugin};
+    pub use crate::cover::{CoverField, CoverFieldPlugin};
     pub use crate::error::RainConfigError;
     pub use crate::queries::{RainQueries, SoundWetness, SurfaceSound};
     pub use crate::rainfall::{RainfallField, RainfallFieldPlugin};
@@ -54,7 +54,7 @@ pub mod prelude {
     pub use crate::snapshot::{RainSnapshot, SnapshotAppExt, SnapshotError};
     pub use crate::state_hash::{HashState, StateHashAppExt, StateHasher, state_hash};
     pub use crate::surface::{
-        DynamicWetness, SurfaceGround, SurfaceMaterial, SurfacePlugin, SurfaceScene, SurfaceSettings,
+        DynamicWetness, SurfaceGround, SurfaceGroundPlugin, SurfaceMaterial, SurfaceScene, SurfaceSettings,
         surface_class_of_name,
     };
     pub use crate::weather::{
@@ -83,8 +83,8 @@ impl Plugin for RainEcsPlugin {
             },
             WeatherPlugin,
             RainfallFieldPlugin,
-            CoverPlugin,
-            SurfacePlugin,
+            CoverFieldPlugin,
+            SurfaceGroundPlugin,
         ));
     }
 }

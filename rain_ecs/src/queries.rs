@@ -97,12 +97,19 @@ impl RainQueries<'_, '_> {
         water.puddle_m + water.film_mm * 1e-3
     }
 
-    /// Share of the rain that reaches a place. Units: none. Domain: [0, 1]; 1 = open sky, also without a cover map.
+    /// Share of the rain that reaches a place. Units: none. Domain: [0, 1]; 1 = open sky, also without a cover map. On
+    /// the ground it is what the cell's water knows (to 1/510), elsewhere the cover map is asked.
     #[must_use]
     pub fn exposed_at(&self, place: impl Into<DVec3>) -> f32 {
         let place = place.into();
         if !place.is_finite() {
             return 0.0;
+        }
+        let known = self.surface.as_ref().filter(|surface| surface.is_exposure_known());
+        if let Some(ground) = known.and_then(|surface| surface.ground())
+            && let Some(share) = ground.exposure_at(place)
+        {
+            return share;
         }
         self.cover.as_ref().map_or(1.0, |cover| cover.exposed_at(place))
     }

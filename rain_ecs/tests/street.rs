@@ -123,7 +123,7 @@ fn fast_forward_ends_in_nearly_the_same_ground() {
         app.world().resource::<SurfaceGround>().ledger()
     };
     let short = ground(&frames_at(30, 1200));
-    let long = ground(&[1200_000_000_000]);
+    let long = ground(&[1_200_000_000_000]);
     assert!((short.rain_m3 - long.rain_m3).abs() < 1e-9 * short.rain_m3);
     assert!(
         (short.basins_m3 - long.basins_m3).abs() < 0.02 * short.basins_m3,

@@ -328,6 +328,47 @@ mod tests {
     }
 
     #[test]
+    fn a_moving_object_rises_in_rain_and_falls_under_cover() {
+        let s = ArtistSettings::dynamic_rain();
+        let after = |w, e, rain, dt| s.object_wetness(w, e, rain, dt);
+        // Half exposed at 10 mm/h: 0.5 · 1 − 0.5 · 0.2 = 0.4 per second.
+        assert!((after(0.0, 0.5, 10.0, 1.0) - 0.4).abs() < 1e-12);
+        assert!((after(0.0, 1.0, 2.0, 1.0) - 0.6).abs() < 1e-12);
+        assert!(
+            (after(1.0, 0.0, 10.0, 2.0) - 0.6).abs() < 1e-12,
+            "dries under cover while it rains"
+        );
+        assert!(
+            (after(1.0, 1.0, 0.0, 2.0) - 0.6).abs() < 1e-12,
+            "and in the open when it does not"
+        );
+        assert_eq!((after(0.9, 1.0, 10.0, 9.0), after(0.1, 0.0, 10.0, 9.0)), (1.0, 0.0));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e300] {
+            for w in [
+                after(bad, 0.5, 5.0, 1.0),
+                after(0.5, bad, 5.0, 1.0),
+                after(0.5, 0.5, bad, 1.0),
+                after(0.5, 0.5, 5.0, bad),
+            ] {
+                assert!((0.0..=1.0).contains(&w), "{bad}: {w}");
+            }
+        }
+        let low = ArtistSettings {
+            wetness: ArtistLevel {
+                target: 0.4,
+                ..s.wetness
+            },
+            ..s
+        };
+        assert_eq!(low.object_wetness(0.0, 1.0, 10.0, 9.0), 0.4);
+        assert_eq!(
+            low.object_wetness(0.9, 1.0, 10.0, 9.0),
+            0.9,
+            "what is above the target stays"
+        );
+    }
+
+    #[test]
     fn rows_of_table_t3_take_the_times_of_table_t4() {
         let s = ArtistSettings::dynamic_rain();
         // rain mm/h, seconds from 0 to 1 of puddles, holes, wetness

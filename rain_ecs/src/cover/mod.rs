@@ -223,9 +223,9 @@ impl SnapshotPart for CoverPart {
 }
 
 /// Adds the [`CoverField`], empty.
-pub struct CoverPlugin;
+pub struct CoverFieldPlugin;
 
-impl Plugin for CoverPlugin {
+impl Plugin for CoverFieldPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<CoverField>()
             .hash_resource::<CoverField>("cover")

@@ -26,10 +26,10 @@ use crate::schedule::{RainSystems, RainTick};
 use crate::snapshot::SnapshotAppExt;
 use crate::state_hash::StateHashAppExt;
 
-/// Adds the wet ground and the wetness of moving objects. Needs [`crate::CoverPlugin`] for what keeps rain off.
-pub struct SurfacePlugin;
+/// Adds the wet ground and the wetness of moving objects. Needs [`crate::CoverFieldPlugin`] for what keeps rain off.
+pub struct SurfaceGroundPlugin;
 
-impl Plugin for SurfacePlugin {
+impl Plugin for SurfaceGroundPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<SurfaceScene>()
             .init_resource::<SurfaceSettings>()

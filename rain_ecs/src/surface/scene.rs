@@ -53,7 +53,7 @@ pub struct SurfaceSettings {
     pub step_m: f64,
     /// How often each cell is advanced. Units: s. Domain: [one tick, 60]. Default: 1.
     pub interval_s: f64,
-    /// Cells whose exposure is asked for in a tick after what covers has changed. Domain: ≥ 1. Default: 2048.
+    /// Cells whose exposure is asked for in a tick after what covers has changed. Domain: ≥ 1. Default: 1024, 0.4 ms.
     pub exposure_cells_per_tick: usize,
     /// Ticks for which nothing static may have changed before the ground is built. Default: 16, half a second.
     pub settle_ticks: u32,
@@ -71,7 +71,7 @@ impl Default for SurfaceSettings {
             max_cells: ground.max_cells,
             step_m: ground.step_m,
             interval_s: 1.0,
-            exposure_cells_per_tick: 2048,
+            exposure_cells_per_tick: 1024,
             settle_ticks: 16,
             drains: Vec::new(),
         }
@@ -81,8 +81,8 @@ impl Default for SurfaceSettings {
 impl SurfaceSettings {
     /// The core's settings for ticks of this length.
     pub(super) fn ground(&self, tick_s: f64) -> GroundSettings {
-        // What is not a number or too small becomes one tick; what is too long is refused by the core.
-        let steps = (self.interval_s / tick_s).round().max(1.0).min(1e9) as u32;
+        // What is too short becomes one tick; what is too long or not a number (0 steps) is refused by the core.
+        let steps = (self.interval_s / tick_s).round().clamp(1.0, 1e9) as u32;
         GroundSettings {
             domain: self.domain,
             cell_m: self.cell_m,
