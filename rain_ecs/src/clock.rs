@@ -8,9 +8,11 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_time::{Time, Virtual};
 use rain_core::error::{ConfigError, in_range};
+use serde::{Deserialize, Serialize};
 
 use crate::schedule::{RainTick, add_tick_schedule};
 use crate::seed::RainSeed;
+use crate::snapshot::{ClockPart, SeedPart, SnapshotAppExt};
 use crate::state_hash::{HashState, StateHashAppExt, StateHasher};
 
 /// Default tick: 1/32 s. Units: ns.
@@ -172,6 +174,51 @@ impl RainClock {
     }
 }
 
+/// The clock's own numbers, for snapshots. Units: ns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ClockState {
+    tick: u64,
+    max_ticks_per_frame: u32,
+    now: u64,
+    /// Of the next tick.
+    begun: u64,
+    current_tick: u64,
+    runs: u64,
+}
+
+impl RainClock {
+    pub(crate) fn state(&self) -> ClockState {
+        ClockState {
+            tick: self.tick_ns,
+            max_ticks_per_frame: self.max_ticks_per_frame,
+            now: self.now_ns,
+            begun: self.due_ns.saturating_sub(self.now_ns),
+            current_tick: self.current_tick_ns,
+            runs: self.runs,
+        }
+    }
+
+    /// This clock with a saved state; none if no clock can have written it. The virtual time goes on from where it is.
+    pub(crate) fn with_state(&self, state: &ClockState) -> Option<Self> {
+        let sound = (1_000_000..=60_000_000_000).contains(&state.tick)
+            && state.max_ticks_per_frame >= 1
+            && state.now.is_multiple_of(state.tick)
+            && state.now < u64::MAX / 2
+            && state.begun < u64::MAX / 4
+            && state.current_tick.is_multiple_of(state.tick);
+        sound.then_some(Self {
+            tick_ns: state.tick,
+            max_ticks_per_frame: state.max_ticks_per_frame,
+            now_ns: state.now,
+            due_ns: state.now + state.begun,
+            current_tick_ns: state.current_tick,
+            runs: state.runs,
+            ..self.clone()
+        })
+    }
+}
+
 fn seconds(ns: u64) -> f64 {
     // Exact below 2^53 ns (104 days); the quotient is rounded once.
     ns as f64 / 1e9
@@ -202,6 +249,8 @@ impl Plugin for RainClockPlugin {
             .add_message::<crate::RainConfigError>()
             .hash_resource::<RainClock>("clock")
             .hash_resource::<RainSeed>("seed")
+            .snapshot_part::<ClockPart>("clock")
+            .snapshot_part::<SeedPart>("seed")
             .add_systems(PreUpdate, run_rain_ticks);
         add_tick_schedule(app);
     }

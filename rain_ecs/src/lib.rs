@@ -16,32 +16,47 @@
 //! ```
 
 pub mod clock;
+pub mod cover;
 pub mod error;
+pub mod queries;
 pub mod rainfall;
 pub mod schedule;
 pub mod seed;
+pub mod snapshot;
 pub mod state_hash;
+pub mod surface;
 pub mod weather;
 
 use bevy_app::{App, Plugin};
 
 pub use clock::{RainClock, RainClockPlugin};
+pub use cover::{CoverField, CoverFieldPlugin};
 pub use error::RainConfigError;
+pub use queries::RainQueries;
 pub use rainfall::{RainfallField, RainfallFieldPlugin};
 pub use schedule::{RainSystems, RainTick};
 pub use seed::RainSeed;
+pub use snapshot::RainSnapshot;
 pub use state_hash::state_hash;
+pub use surface::SurfaceGroundPlugin;
 pub use weather::WeatherPlugin;
 
 /// What an application usually names.
 pub mod prelude {
     pub use crate::RainEcsPlugin;
     pub use crate::clock::{RainClock, RainClockPlugin};
+    pub use crate::cover::{CoverField, CoverFieldPlugin};
     pub use crate::error::RainConfigError;
+    pub use crate::queries::{RainQueries, SoundWetness, SurfaceSound};
     pub use crate::rainfall::{RainfallField, RainfallFieldPlugin};
     pub use crate::schedule::{RainSystems, RainTick};
     pub use crate::seed::RainSeed;
+    pub use crate::snapshot::{RainSnapshot, SnapshotAppExt, SnapshotError};
     pub use crate::state_hash::{HashState, StateHashAppExt, StateHasher, state_hash};
+    pub use crate::surface::{
+        DynamicWetness, SurfaceGround, SurfaceGroundPlugin, SurfaceMaterial, SurfaceScene, SurfaceSettings,
+        surface_class_of_name,
+    };
     pub use crate::weather::{
         ActiveWeather, ArtistControls, Weather, WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState,
         WeatherTimeline,
@@ -68,6 +83,8 @@ impl Plugin for RainEcsPlugin {
             },
             WeatherPlugin,
             RainfallFieldPlugin,
+            CoverFieldPlugin,
+            SurfaceGroundPlugin,
         ));
     }
 }

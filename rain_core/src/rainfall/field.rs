@@ -8,6 +8,7 @@
 //! Inside a class all drops share one speed: 4–5 % rms from the speed of their own diameter (at most 11 %).
 
 use glam::{DVec3, IVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use super::classes::{CLASS_COUNT, REFERENCE_N0_PER_M3_MM, REFERENCE_SLOPE_PER_MM, SizeClass};
 use super::spectrum::Spectrum;
@@ -133,7 +134,8 @@ impl Threshold {
 }
 
 /// Where each class's frame stands: the integral of its velocity, exact to 1e-10 m after days.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FieldMotion {
     /// ∫ u_k dt per class. Units: m.
     pub offset_m: [DVec3; CLASS_COUNT],

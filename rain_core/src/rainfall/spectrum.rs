@@ -78,7 +78,8 @@ pub(super) const MIN_SLOPE_INTENSITY_MM_H: f64 = 1e-4;
 /// One rain state's spectrum: number of drops per m³ of air and mm of diameter.
 ///
 /// N₀ is set so that ∫ over all diameters carries `intensity_mm_h`; a diameter range only selects from it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Spectrum {
     /// Rain rate. Units: mm/h. Domain: [0, 500].
     pub intensity_mm_h: f64,

@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 use crate::rainfall::MAX_INTENSITY_MM_H;
 
@@ -167,6 +167,38 @@ pub struct ArtistState {
     pub dry_for_s: f64,
 }
 
+impl ArtistSettings {
+    /// How fast the wet level rises. Units: 1/s. `intensity_mm_h` as in [`relative_intensity`].
+    #[must_use]
+    pub fn wetness_rise_per_s(&self, intensity_mm_h: f64) -> f64 {
+        let relative = relative_intensity(intensity_mm_h);
+        if relative > RAINING {
+            through_rows(relative, ROWS, self.wetness.rise_per_s)
+        } else {
+            0.0
+        }
+    }
+
+    /// Wet level of a moving object after `dt_s`: w + (e·rise − (1 − e)·fall) dt within [0, target], without rain
+    /// w − fall dt (digest E: E43–E45, N11). Units: none.
+    ///
+    /// `wetness` and the share `exposure` of the rain that reaches it are held in [0, 1], `dt_s` in [0, 1e9]; what is
+    /// not a number counts as 0. An object that comes from a wetter setting keeps what is above the target until it
+    /// dries. Error: rounding; constant e over the step.
+    #[must_use]
+    pub fn object_wetness(&self, wetness: f64, exposure: f64, intensity_mm_h: f64, dt_s: f64) -> f64 {
+        let (w, e, dt) = (
+            clamped(wetness, 0.0, 1.0),
+            clamped(exposure, 0.0, 1.0),
+            clamped(dt_s, 0.0, 1e9),
+        );
+        let rise = self.wetness_rise_per_s(intensity_mm_h);
+        let e = if rise > 0.0 { e } else { 0.0 };
+        let after = w + (e * rise - (1.0 - e) * self.wetness.fall_per_s) * dt;
+        after.clamp(0.0, self.wetness.target.max(w))
+    }
+}
+
 impl ArtistState {
     /// Whether nothing is wet.
     #[must_use]
@@ -293,6 +325,47 @@ mod tests {
             state.advance(settings, rate, dt).expect("valid");
         }
         state
+    }
+
+    #[test]
+    fn a_moving_object_rises_in_rain_and_falls_under_cover() {
+        let s = ArtistSettings::dynamic_rain();
+        let after = |w, e, rain, dt| s.object_wetness(w, e, rain, dt);
+        // Half exposed at 10 mm/h: 0.5 · 1 − 0.5 · 0.2 = 0.4 per second.
+        assert!((after(0.0, 0.5, 10.0, 1.0) - 0.4).abs() < 1e-12);
+        assert!((after(0.0, 1.0, 2.0, 1.0) - 0.6).abs() < 1e-12);
+        assert!(
+            (after(1.0, 0.0, 10.0, 2.0) - 0.6).abs() < 1e-12,
+            "dries under cover while it rains"
+        );
+        assert!(
+            (after(1.0, 1.0, 0.0, 2.0) - 0.6).abs() < 1e-12,
+            "and in the open when it does not"
+        );
+        assert_eq!((after(0.9, 1.0, 10.0, 9.0), after(0.1, 0.0, 10.0, 9.0)), (1.0, 0.0));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e300] {
+            for w in [
+                after(bad, 0.5, 5.0, 1.0),
+                after(0.5, bad, 5.0, 1.0),
+                after(0.5, 0.5, bad, 1.0),
+                after(0.5, 0.5, 5.0, bad),
+            ] {
+                assert!((0.0..=1.0).contains(&w), "{bad}: {w}");
+            }
+        }
+        let low = ArtistSettings {
+            wetness: ArtistLevel {
+                target: 0.4,
+                ..s.wetness
+            },
+            ..s
+        };
+        assert_eq!(low.object_wetness(0.0, 1.0, 10.0, 9.0), 0.4);
+        assert_eq!(
+            low.object_wetness(0.9, 1.0, 10.0, 9.0),
+            0.9,
+            "what is above the target stays"
+        );
     }
 
     #[test]

@@ -63,8 +63,9 @@ impl ColumnLedger {
     }
 }
 
-/// The water of one surface. Starts dry.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+/// The water of one surface. Starts dry. What is read from outside is checked by [`super::WeatherSurfaces::validated`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SurfaceColumn {
     pub(crate) pores: Store,
     pub(crate) film: Store,

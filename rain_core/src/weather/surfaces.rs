@@ -1,5 +1,7 @@
 //! Every surface class and the artists' levels, advanced over conditions or a timeline.
 
+use serde::{Deserialize, Serialize};
+
 use super::artist::{ArtistSettings, ArtistState};
 use super::column::{ColumnForcing, SurfaceColumn};
 use super::conditions::WeatherConditions;
@@ -7,7 +9,7 @@ use super::evaporation::penman_evaporation_mm_h;
 use super::store::Store;
 use super::surface_class::{SurfaceClass, SurfaceProperties};
 use super::timeline::Timeline;
-use crate::error::ConfigError;
+use crate::error::{ConfigError, in_range};
 use crate::ops;
 
 /// Longest piece over which varying weather counts as constant (at its mean). Units: s.
@@ -21,7 +23,10 @@ pub const VARYING_STEP_S: f64 = 1.0 / 32.0;
 const PIECE_ERROR_MM: f64 = 3e-8;
 
 /// The open ground under one weather: one [`SurfaceColumn`] per [`SurfaceClass`], and the artists' levels.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// As plain data it can be saved and sent; what comes back goes through [`WeatherSurfaces::validated`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct WeatherSurfaces {
     properties: [SurfaceProperties; SurfaceClass::COUNT],
     columns: [SurfaceColumn; SurfaceClass::COUNT],
@@ -54,6 +59,32 @@ impl WeatherSurfaces {
             artist_settings: artist_settings.validated()?,
             ..Self::default()
         })
+    }
+
+    /// This state, if it can have come about: after it was read from outside.
+    ///
+    /// # Errors
+    /// When an amount is negative, not finite or beyond its capacity, a ledger is open by more than 1e-9, a level is
+    /// outside [0, 1], or a property or setting outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        for (column, properties) in self.columns.iter().zip(&self.properties) {
+            SurfaceColumn::restore(column.ledger(), properties)?;
+        }
+        self.artist_settings.validated()?;
+        let a = &self.artist;
+        for level in [a.wetness, a.holes, a.puddles] {
+            in_range("artist level", level, 0.0, 1.0, "0 to 1")?;
+        }
+        in_range("dry_for_s", a.dry_for_s, 0.0, 1e6, "0 to 1e6 s")?;
+        in_range("rain_mm", self.rain.total(), 0.0, 1e12, "0 to 1e12 mm")?;
+        in_range(
+            "evaporation_mm_h",
+            self.evaporation_mm_h,
+            -1e4,
+            1e4,
+            "-10000 to 10000 mm/h",
+        )?;
+        Ok(self)
     }
 
     /// Replaces the properties of a class; its water stays.

@@ -9,6 +9,7 @@
 //! |---|---|
 //! | `tyre.rs` | a tyre's parameters |
 //! | `water.rs` | water met, its split, what is left behind |
+//! | `friction.rs` | friction of a tyre on wet ground of any class |
 //! | `hydroplaning.rs` | the speed at which a tyre floats, grip below it |
 //! | `spray.rs` | where each mechanism throws which drops |
 //! | `emitter.rs` | particles within a budget that keep the mass |
@@ -24,6 +25,7 @@
 mod air;
 mod calculator;
 mod emitter;
+mod friction;
 mod hydroplaning;
 mod spray;
 mod track;
@@ -33,6 +35,7 @@ mod water;
 pub use air::{spray_reach_m, spray_relative_speed_m_s, spray_relaxation_s};
 pub use calculator::{WheelReport, hydroplaning_speed_km_h, wheel_on_film};
 pub use emitter::{SprayEmitter, spray_parcel_kg};
+pub use friction::{GroundWater, ground_friction};
 pub use hydroplaning::{GallawayCase, gallaway_speed_km_h, grip_share, horne_speed_km_h, hydroplanes, wet_grip};
 pub use spray::{SprayDroplet, SprayMechanism, drops_per_kg, spray_droplet};
 pub use track::track_film_mm;

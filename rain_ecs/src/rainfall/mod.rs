@@ -6,14 +6,17 @@ use bevy_math::DVec3;
 use rain_core::rainfall::terminal_velocity::air_density_kg_m3;
 use rain_core::rainfall::{Distribution, FieldMotion, Spectrum};
 use rain_core::weather::WeatherConditions;
+use serde::{Deserialize, Serialize};
 
 use crate::clock::RainClock;
 use crate::schedule::{RainSystems, RainTick};
+use crate::snapshot::{RainfallPart, SnapshotAppExt};
 use crate::state_hash::{HashState, StateHashAppExt, StateHasher};
 use crate::weather::{ActiveWeather, WeatherState};
 
 /// What falls, everywhere: areas change only the intensity.
-#[derive(Resource, Debug, Clone, Copy, PartialEq)]
+#[derive(Resource, Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RainfallField {
     motion: FieldMotion,
     spectrum: Spectrum,
@@ -77,6 +80,19 @@ impl RainfallField {
         self.motion.after(seconds)
     }
 
+    /// Whether these numbers can have come about: of a field that was read from outside.
+    pub(crate) fn is_sound(&self) -> bool {
+        let finite = |v: &DVec3, most: f64| v.is_finite() && v.abs().max_element() <= most;
+        let s = &self.spectrum;
+        self.motion.offset_m.iter().all(|v| finite(v, 1e12))
+            && self.motion.velocity_m_s.iter().all(|v| finite(v, 200.0))
+            && finite(&self.wind_m_s, 80.0)
+            && (0.0..=500.0).contains(&s.intensity_mm_h)
+            && (0.0..1e9).contains(&s.n0_per_m3_mm)
+            && (0.1..1e3).contains(&s.slope_per_mm)
+            && (0.01..=10.0).contains(&self.mean_inverse_velocity_s_m)
+    }
+
     /// Takes over the weather of this tick and moves on by its length.
     fn tick(&mut self, conditions: &WeatherConditions, seconds: f64) {
         if conditions.intensity_mm_h != self.spectrum.intensity_mm_h || conditions.distribution != self.distribution {
@@ -116,6 +132,7 @@ impl Plugin for RainfallFieldPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<RainfallField>()
             .hash_resource::<RainfallField>("rainfall")
+            .snapshot_part::<RainfallPart>("rainfall")
             .add_systems(RainTick, advance_field.in_set(RainSystems::Rainfall));
     }
 }

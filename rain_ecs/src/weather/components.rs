@@ -6,6 +6,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use rain_core::rainfall::Distribution;
 use rain_core::weather::{ArtistSettings, Timeline, WeatherConditions, WeatherPreset};
+use serde::{Deserialize, Serialize};
 
 use super::state::WeatherState;
 
@@ -107,7 +108,8 @@ impl WeatherTimeline {
 
 /// Which of the two ways gives [`WeatherState::wetness`] and [`WeatherState::water_level_mm`]. Both are always
 /// computed, so that switching does not jump to a dry start.
-#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[reflect(Component, Debug, Clone, PartialEq, Default)]
 pub enum WeatherMode {
     /// Water in mm per surface class, from physics.

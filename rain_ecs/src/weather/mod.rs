@@ -21,6 +21,7 @@ pub use state::WeatherState;
 pub use systems::{ActiveWeather, WeatherIgnored};
 
 use crate::schedule::{RainSystems, RainTick};
+use crate::snapshot::{SnapshotAppExt, WeatherPart};
 use crate::state_hash::{HashState, StateHashAppExt};
 
 /// Adds the weather. Needs [`crate::RainClockPlugin`] to run.
@@ -37,6 +38,7 @@ impl Plugin for WeatherPlugin {
             .register_type::<WeatherMode>()
             .register_type::<ArtistControls>()
             .register_type::<WeatherState>()
+            .snapshot_part::<WeatherPart>("weather")
             .hash_with("weather", |world, hasher| {
                 let active = world.get_resource::<ActiveWeather>().and_then(ActiveWeather::entity);
                 if let Some(state) = active.and_then(|entity| world.get::<WeatherState>(entity)) {

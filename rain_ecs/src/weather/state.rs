@@ -3,14 +3,18 @@
 use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
+use rain_core::error::{ConfigError, in_range};
 use rain_core::weather::{ArtistState, SurfaceClass, SurfaceColumn, WeatherConditions, WeatherSurfaces};
+
+use serde::{Deserialize, Serialize};
 
 use super::components::WeatherMode;
 use crate::state_hash::{HashState, StateHasher};
 
 /// The weather in force and the state of open ground under it, after the last tick. Written by the weather systems
 /// alone.
-#[derive(Component, Reflect, Debug, Clone, Default)]
+#[derive(Component, Reflect, Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 #[reflect(opaque)]
 #[reflect(Component, Debug, Clone, Default)]
 pub struct WeatherState {
@@ -106,6 +110,20 @@ impl WeatherState {
                 WeatherMode::Physical => self.surfaces.ground_is_dry(),
                 WeatherMode::Artist => self.surfaces.artist().is_dry(),
             }
+    }
+
+    /// This state, if it can have come about: after it was read from outside.
+    pub(crate) fn validated(self) -> Result<Self, ConfigError> {
+        for [wetness, level_mm] in self.before {
+            in_range("wetness before the last tick", wetness, 0.0, 1.0, "0 to 1")?;
+            in_range("level before the last tick", level_mm, 0.0, 1e12, "0 to 1e12 mm")?;
+        }
+        Ok(Self {
+            conditions: self.conditions.validated()?,
+            last_good: self.last_good.validated()?,
+            surfaces: self.surfaces.validated()?,
+            ..self
+        })
     }
 
     /// Remembers the levels that the coming tick starts from.

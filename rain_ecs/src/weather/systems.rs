@@ -26,6 +26,13 @@ impl ActiveWeather {
     }
 }
 
+impl ActiveWeather {
+    /// Lets this entity's weather count from now on, until the next tick looks.
+    pub(crate) fn restore(&mut self, entity: Entity) {
+        self.entity = Some(entity);
+    }
+}
+
 /// A second [`Weather`] exists and has no effect. Written once per entity that becomes ignored.
 #[derive(Message, Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WeatherIgnored {

@@ -122,6 +122,16 @@ impl Ground {
         }
     }
 
+    /// Share of the rain that reaches a place on the ground, by the exposure of its cell; none where the place is not on
+    /// the ground. Units: none.
+    #[must_use]
+    pub fn exposure_at(&self, place: DVec3) -> Option<f32> {
+        let cell = self.cell_at(place.x, place.z)?;
+        // A hole is never near.
+        let near = (place.y - self.heights[cell]).abs() <= REACH_M;
+        near.then(|| f32::from(self.exposure[cell]) / 255.0)
+    }
+
     fn saturation(&self, class: SurfaceClass, pores_mm: f64) -> f64 {
         (pores_mm / self.properties[class.index()].pore_capacity_mm).clamp(0.0, 1.0)
     }

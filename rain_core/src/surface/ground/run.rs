@@ -81,7 +81,7 @@ impl Cover {
 /// take turns by the number of the step, so the state depends on the steps alone. Steps allocate nothing. A step of a
 /// dry ground without rain touches nothing but counters.
 ///
-/// Memory: 45 bytes a cell, 28 more where something covers it, and the basins.
+/// Memory: 45 bytes a cell, 36 more where something covers it, and the basins.
 #[derive(Debug, Clone)]
 pub struct Ground {
     pub(super) frame: GridFrame,

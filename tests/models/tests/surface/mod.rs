@@ -1,6 +1,7 @@
 //! Film, road film, infiltration, inlets, puddles, states and looks of wet surfaces.
 
 mod flow;
+mod ground;
 mod look;
 mod puddle;
 mod soil;

@@ -1,0 +1,55 @@
+//! Water on the scene's surfaces: the ground with its films and puddles, and objects that move.
+//!
+//! | file | concept |
+//! |---|---|
+//! | `scene.rs` | [`SurfaceScene`], where the host puts triangles; [`SurfaceSettings`] |
+//! | `ground.rs` | [`SurfaceGround`], built from it, with its water |
+//! | `material.rs` | [`SurfaceMaterial`], and classes guessed from names |
+//! | `dynamic.rs` | [`DynamicWetness`] of objects that move |
+//! | `snapshot.rs` | their parts of a snapshot |
+
+mod dynamic;
+mod ground;
+mod material;
+mod scene;
+mod snapshot;
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+
+pub use dynamic::DynamicWetness;
+pub use ground::SurfaceGround;
+pub use material::{SurfaceMaterial, surface_class_of_name};
+pub use scene::{SurfaceScene, SurfaceSettings};
+
+use crate::schedule::{RainSystems, RainTick};
+use crate::snapshot::SnapshotAppExt;
+use crate::state_hash::StateHashAppExt;
+
+/// Adds the wet ground and the wetness of moving objects. Needs [`crate::CoverFieldPlugin`] for what keeps rain off.
+pub struct SurfaceGroundPlugin;
+
+impl Plugin for SurfaceGroundPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<SurfaceScene>()
+            .init_resource::<SurfaceSettings>()
+            .init_resource::<SurfaceGround>()
+            .register_type::<SurfaceMaterial>()
+            .register_type::<DynamicWetness>()
+            .hash_resource::<SurfaceGround>("surface")
+            .hash_with("dynamic_wetness", dynamic::hash_objects)
+            .snapshot_part::<snapshot::SurfacePart>("surface")
+            .snapshot_part::<snapshot::ObjectsPart>("dynamic_wetness")
+            .add_systems(
+                RainTick,
+                (
+                    ground::rebuild,
+                    ground::refresh_exposure,
+                    ground::advance,
+                    dynamic::wet_objects,
+                )
+                    .chain()
+                    .in_set(RainSystems::Surface),
+            );
+    }
+}

@@ -1,0 +1,8 @@
+//! Rain as components and systems, in apps without a renderer.
+
+mod common;
+mod cover;
+mod queries;
+mod snapshot;
+mod street;
+mod weather;
