@@ -33,7 +33,9 @@ const LOW_SHARE: f64 = 0.2;
 /// Share of the drip in the four radial classes of a crown `thickness_m` thick.
 ///
 /// Linear between the rows, so the sum stays 1; `thickness_m` held in [4.8, 7.8] m, what is not a number counts as 4.8.
-/// Units: none. Source: [`RADIAL_SHARES`]. Error: rounding; trees differ, and wind undoes the pattern.
+/// Units: none. Source: [`RADIAL_SHARES`].
+///
+/// Error: rounding; trees differ, and wind undoes the pattern.
 #[must_use]
 pub fn radial_shares(thickness_m: f64) -> [f64; 4] {
     let x = clamped(thickness_m, RADIAL_THICKNESSES_M[0], RADIAL_THICKNESSES_M[3]) - RADIAL_THICKNESSES_M[0];
@@ -73,7 +75,9 @@ pub struct CrownPlace {
 ///
 /// `crown_radius_m` in m, held in [0, 1000], what is not a number counts as 0. The same integers give the same place.
 /// Classes are taken in turn by an additive recurrence, so that even a few places follow the shares.
-/// Source: choice; rings midway between the measured distances. Error: shares of n places at most 3/n off.
+/// Source: choice; rings midway between the measured distances.
+///
+/// Error: shares of n places at most 3/n off.
 #[must_use]
 pub fn crown_place(seed: u32, index: u32, crown_radius_m: f64, thickness_m: f64) -> CrownPlace {
     let radius = clamped(crown_radius_m, 0.0, 1000.0);

@@ -71,8 +71,9 @@ impl CanopyProperties {
 
     /// Storage capacity S = 0.15 LAI (broad leaves) or 0.20 LAI (needles). Units: mm.
     ///
-    /// Source: Watanabe & Mizutani 1996, in Weber et al. 2016, eq. 1. Error: rounding; real crowns differ by a factor
-    /// of two.
+    /// Source: Watanabe & Mizutani 1996, in Weber et al. 2016, eq. 1.
+    ///
+    /// Error: rounding; real crowns differ by a factor of two.
     #[must_use]
     pub fn capacity_mm(&self) -> f64 {
         self.kind.storage_mm_per_leaf_area() * self.leaf_area_index
@@ -80,7 +81,9 @@ impl CanopyProperties {
 
     /// Share of the rain that meets no leaf, p = e^(−κ LAI). Units: none, (0, 1].
     ///
-    /// Source: Beer's law for gaps. Error: rounding; clumped leaves let more through.
+    /// Source: Beer's law for gaps.
+    ///
+    /// Error: rounding; clumped leaves let more through.
     #[must_use]
     pub fn free_share(&self) -> f64 {
         ops::exp(-self.gap_extinction * self.leaf_area_index)
@@ -96,7 +99,9 @@ impl CanopyProperties {
 /// Time until the crown holds all it can under constant rain without evaporation, t_sat = 7200 S/R.
 ///
 /// `capacity_mm` in mm, `rain_mm_h` in mm/h. Units: s. `None` where the rain is not above 0 or either is not finite;
-/// a negative capacity counts as 0. Source: Weber et al. 2016, eq. 2. Error: rounding.
+/// a negative capacity counts as 0. Source: Weber et al. 2016, eq. 2.
+///
+/// Error: rounding.
 #[must_use]
 pub fn saturation_time_s(capacity_mm: f64, rain_mm_h: f64) -> Option<f64> {
     let time = 7200.0 * capacity_mm.max(0.0) / rain_mm_h;

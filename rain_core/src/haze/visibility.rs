@@ -32,7 +32,9 @@ pub fn visibility_m(extinction_per_m: f64, threshold: f64) -> f64 {
 
 /// The inverse: extinction at which `visibility_m` (m, clamped to [1e-3, 1e9], NaN counts as 1e9) is seen. Units: 1/m.
 ///
-/// `threshold` as in [`visibility_m`]. Error: rounding.
+/// `threshold` as in [`visibility_m`].
+///
+/// Error: rounding.
 #[must_use]
 pub fn extinction_for_visibility_per_m(visibility_m: f64, threshold: f64) -> f64 {
     let v = if visibility_m.is_nan() {

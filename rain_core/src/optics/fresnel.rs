@@ -158,7 +158,9 @@ pub fn schlick_f32(cos_incidence: f32, normal_reflectance: f32) -> f32 {
 
 /// Angle of incidence at which no light polarised in the plane of incidence is reflected, atan n. Units: rad.
 ///
-/// `relative_index` as in [`fresnel`]. Error: rounding.
+/// `relative_index` as in [`fresnel`].
+///
+/// Error: rounding.
 #[must_use]
 pub fn brewster_rad(relative_index: f64) -> f64 {
     ops::atan2(index(relative_index), 1.0)
@@ -166,7 +168,9 @@ pub fn brewster_rad(relative_index: f64) -> f64 {
 
 /// Angle of incidence from inside beyond which all light is reflected, asin(1/n). Units: rad; π/2 for n = 1.
 ///
-/// `index`: of the medium, clamped to [1, 10], NaN counts as 1. Error: rounding.
+/// `index`: of the medium, clamped to [1, 10], NaN counts as 1.
+///
+/// Error: rounding.
 #[must_use]
 pub fn critical_angle_rad(index: f64) -> f64 {
     ops::asin(1.0 / self::index(index).max(1.0))
@@ -201,7 +205,9 @@ pub fn hemispherical_mean(index: f64) -> f64 {
 
 /// Mean reflectance for diffuse light from inside, 1 − (1 − R̄)/n²: total reflection included. Units: none.
 ///
-/// `index` as in [`hemispherical_mean`]. Error: as there.
+/// `index` as in [`hemispherical_mean`].
+///
+/// Error: as there.
 #[must_use]
 pub fn hemispherical_mean_inside(index: f64) -> f64 {
     let n = self::index(index).max(1.0);

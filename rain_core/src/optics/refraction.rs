@@ -53,7 +53,9 @@ pub fn deviation_sin_cos_f32(impact: f32, index: f32) -> [f32; 2] {
 
 /// Widest angle seen through a sphere, 2 δ(1) = 4 acos(1/n). Units: rad.
 ///
-/// `index` as in [`deviation_rad`]. Error: rounding.
+/// `index` as in [`deviation_rad`].
+///
+/// Error: rounding.
 #[must_use]
 pub fn field_of_view_rad(index: f64) -> f64 {
     2.0 * deviation_rad(1.0, index)

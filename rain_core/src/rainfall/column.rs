@@ -39,7 +39,9 @@ pub fn column_drop(phase_turns: f64, speed_m_s: f64, time_s: f64, height_m: f64)
 
 /// x − ⌊x⌋ in [0, 1), also for a tiny negative x, where the difference rounds to 1; 0 for what is not finite.
 ///
-/// Units: none. Error: none.
+/// Units: none.
+///
+/// Error: none.
 #[must_use]
 pub fn fract(x: f64) -> f64 {
     let part = x - x.floor();

@@ -258,7 +258,9 @@ impl DropSizes {
             .sum()
     }
 
-    /// ∫ N Dⁿ dD over [a, b] mm, in closed form. Units: m⁻³ mmⁿ. As [`Spectrum::moment`]. Error: 1e-9 relative.
+    /// ∫ N Dⁿ dD over [a, b] mm, in closed form. Units: m⁻³ mmⁿ. As [`Spectrum::moment`].
+    ///
+    /// Error: 1e-9 relative.
     #[must_use]
     pub fn moment(&self, n: u32, a_mm: f64, b_mm: f64) -> f64 {
         self.parts()

@@ -217,7 +217,9 @@ impl GammaSpectrum {
     }
 
     /// Rain rate carried by diameters in [a, b] mm with a fall law. Units: mm/h. Domain and clamps as in
-    /// [`GammaSpectrum::moment`]. Error: 2e-6 relative.
+    /// [`GammaSpectrum::moment`].
+    ///
+    /// Error: 2e-6 relative.
     pub fn rain_rate_mm_h(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         let Some((a, b)) = diameters(a_mm, b_mm) else {
             return 0.0;

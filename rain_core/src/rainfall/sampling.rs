@@ -51,7 +51,9 @@ impl AirSampler {
 
     /// Diameter at the share `u` of the drops, D = a − ln(1 − u(1 − e^(−Λ(b − a))))/Λ. Units: mm.
     ///
-    /// `u` in [0, 1], held there; NaN counts as 0. Error: 1e-13 relative.
+    /// `u` in [0, 1], held there; NaN counts as 0.
+    ///
+    /// Error: 1e-13 relative.
     #[must_use]
     pub fn diameter_mm(&self, u: f64) -> f64 {
         let u = if u > 0.0 { u.min(1.0) } else { 0.0 };
@@ -65,7 +67,9 @@ impl AirSampler {
         d.clamp(self.min_mm, self.max_mm)
     }
 
-    /// [`AirSampler::diameter_mm`] in single precision. Error: 1e-6 relative.
+    /// [`AirSampler::diameter_mm`] in single precision.
+    ///
+    /// Error: 1e-6 relative.
     #[must_use]
     pub fn diameter_mm_f32(&self, u: f32) -> f32 {
         let u = if u > 0.0 { u.min(1.0) } else { 0.0 };

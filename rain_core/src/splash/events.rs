@@ -13,8 +13,10 @@ const LARGEST_MEAN: f64 = 1e6;
 ///
 /// Inverse of the distribution at a hashed 48-bit number; means above 30 are split into equal parts with keys of their
 /// own. `mean` held in [0, 1e6], what is not a number counts as 0; costs about `mean` steps. Units: none.
-/// Source: inverse of the cumulative distribution. Error: none up to chances of 4e-15; mean, variance and single
-/// chances of 20 000 counts lie within four standard deviations.
+/// Source: inverse of the cumulative distribution.
+///
+/// Error: none up to chances of 4e-15; mean, variance and single chances of 20 000 counts lie within four standard
+/// deviations.
 #[must_use]
 pub fn hashed_poisson(mean: f64, key: [u32; 3]) -> u32 {
     let mean = clamped(mean, 0.0, LARGEST_MEAN);

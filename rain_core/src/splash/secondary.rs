@@ -110,7 +110,9 @@ impl Splash {
     /// Deposition up to the threshold (see [`splash_threshold_k`](super::splash_threshold_k)); above it 5 to 30
     /// secondary drops, linear in K/K_threshold up to 19, the fraction decided by hash. Only the speed along the normal
     /// counts. What is not finite in `impact` counts as 0. Water: thrown + retained = the drop. Source: thresholds as
-    /// there; numbers a choice. Error: thrown volume is the sum over [`secondary_drop`] to 1e-6.
+    /// there; numbers a choice.
+    ///
+    /// Error: thrown volume is the sum over [`secondary_drop`] to 1e-6.
     #[must_use]
     pub fn new(impact: &Impact, key: [u32; 3]) -> Self {
         let impact = impact.sound();
