@@ -12,7 +12,7 @@ pub(super) const FASTEST_M_S: f64 = 1000.0;
 
 /// The numbers that rule an impact of water at 20 °C.
 ///
-/// Error: rounding, 1e-15 relative.
+/// Error: 1e-15 relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactNumbers {
     /// We = ρ v² D/σ, inertia against surface tension.
@@ -52,7 +52,7 @@ impl ImpactNumbers {
 ///
 /// Units: none. Source: Mundo et al. 1995, Stow & Hadfield 1981.
 ///
-/// Error: rounding.
+/// Error: 1e-15 relative.
 #[must_use]
 pub fn splash_k(diameter_mm: f64, speed_m_s: f64) -> f64 {
     ImpactNumbers::new(diameter_mm, speed_m_s).k
@@ -71,6 +71,8 @@ pub fn splash_k_f32(diameter_mm: f32, speed_m_s: f32) -> f32 {
 }
 
 /// Mass of a drop of water. `diameter_mm` in mm, held in [0, 100], what is not a number counts as 0. Units: kg.
+///
+/// Error: 2e-15 relative; 0.4 % between 0 and 30 °C.
 #[must_use]
 pub fn water_drop_kg(diameter_mm: f64) -> f64 {
     drop_mass_kg(clamped(diameter_mm, 0.0, LARGEST_MM))
@@ -78,7 +80,7 @@ pub fn water_drop_kg(diameter_mm: f64) -> f64 {
 
 /// Momentum m v of a drop. Arguments as [`ImpactNumbers`]. Units: kg m/s.
 ///
-/// Error: rounding.
+/// Error: 2e-15 relative.
 #[must_use]
 pub fn impact_momentum_kg_m_s(diameter_mm: f64, speed_m_s: f64) -> f64 {
     water_drop_kg(diameter_mm) * clamped(speed_m_s, 0.0, FASTEST_M_S)
@@ -86,7 +88,7 @@ pub fn impact_momentum_kg_m_s(diameter_mm: f64, speed_m_s: f64) -> f64 {
 
 /// Kinetic energy ½ m v² of a drop. Arguments as [`ImpactNumbers`]. Units: J.
 ///
-/// Error: rounding.
+/// Error: 2e-15 relative.
 #[must_use]
 pub fn impact_energy_j(diameter_mm: f64, speed_m_s: f64) -> f64 {
     let v = clamped(speed_m_s, 0.0, FASTEST_M_S);
