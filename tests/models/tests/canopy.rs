@@ -1,6 +1,7 @@
 //! Canopy store and drips.
 
 mod drips;
+mod formulas;
 
 use proptest::prelude::*;
 use rain_core::canopy::{
