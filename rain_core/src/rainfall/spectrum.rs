@@ -61,6 +61,8 @@ impl Distribution {
     }
 
     /// N₀ as published. Units: m⁻³ mm⁻¹.
+    ///
+    /// Error: exact, the sources' numbers.
     #[must_use]
     pub fn published_n0_per_m3_mm(self) -> f64 {
         match self {
