@@ -21,6 +21,8 @@ pub struct Polarised {
 
 impl Polarised {
     /// Of unpolarised light.
+    ///
+    /// Error: exact, the mean of both.
     #[must_use]
     pub fn mean(self) -> f64 {
         0.5 * (self.s + self.p)

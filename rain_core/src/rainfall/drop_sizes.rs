@@ -123,6 +123,8 @@ impl SizeLaw {
     }
 
     /// N₀, or N_w of a gamma distribution. Units: m⁻³ mm⁻¹.
+    ///
+    /// Error: that of its law, the same bits.
     #[must_use]
     pub fn n0_per_m3_mm(&self) -> f64 {
         match self {
@@ -132,6 +134,8 @@ impl SizeLaw {
     }
 
     /// Λ, (4 + µ)/D_m of a gamma distribution. Units: mm⁻¹.
+    ///
+    /// Error: that of its law, the same bits.
     #[must_use]
     pub fn slope_per_mm(&self) -> f64 {
         match self {
@@ -219,6 +223,8 @@ impl DropSizes {
     /// Sizes with the published N₀, which carry up to 19 % more or 28 % less than `intensity_mm_h` from 1 to 100 mm/h,
     /// and less than half of it in the lightest drizzle. A gamma distribution has no published rate to miss and is that
     /// of [`DropSizes::new`].
+    ///
+    /// Error: that of [`Spectrum::published`], the same bits.
     ///
     /// # Errors
     /// When `intensity_mm_h` is outside [0, 500] or not finite.

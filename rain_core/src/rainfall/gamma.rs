@@ -174,6 +174,8 @@ impl GammaSpectrum {
     }
 
     /// Whether N_w and D_m lie on the convective side of log₁₀ N_w = 6.3 − 1.6 D_m. Source: Bringi et al. 2003, 2009.
+    ///
+    /// Error: exact, more than 1e-12 of N_w from the line; the line parts observed clusters, not single showers.
     #[must_use]
     pub fn is_convective(&self) -> bool {
         // ln N_w > ln 10 (6.3 − 1.6 D_m); no drops are not convective.

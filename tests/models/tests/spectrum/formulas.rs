@@ -150,6 +150,19 @@ fn gamma_distributions_are_testuds() {
         });
     }
     climate.assert_below(1e-9, 3);
+    let mut sides = [0_u32; 2];
+    for i in 1..=400 {
+        let dm = 0.01 * f64::from(i);
+        for exponent in [2.0, 3.1, 4.7, 6.0] {
+            let border = 6.3 - 1.6 * dm;
+            if f64::abs(exponent - border) > 1e-12 {
+                let spectrum = GammaSpectrum::new(10_f64.powf(exponent), dm, 2.0).unwrap();
+                assert_eq!(spectrum.is_convective(), exponent > border, "{dm} mm, 10^{exponent}");
+                sides[usize::from(exponent > border)] += 1;
+            }
+        }
+    }
+    assert!(sides[0] > 300 && sides[1] > 300, "{sides:?}");
     let mut carried = Worst::default();
     for kind in GammaClimate::ALL {
         for r in [0.5, 25.0, 300.0] {
