@@ -99,18 +99,6 @@ pub fn gust_amplitude(terminal: f64, frequency: f64) -> f64 {
     (sine * sine + cosine * cosine).sqrt() * 2.0 / f64::from(steps)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_do_not_matter() {
-        let coarse = speeds_at(2.0, 6.49, &[1.0, 4.0], 2e-3);
-        let fine = speeds_at(2.0, 6.49, &[1.0, 4.0], 5e-4);
-        assert!(coarse.iter().zip(fine).all(|(a, b)| (a - b).abs() < 1e-5));
-    }
-}
-
 /// c of the drag law, from its values at 0, 4 and 8 mm.
 pub fn stiffness(d: f64) -> f64 {
     // The parabola's top is at 8.564 mm.
@@ -160,4 +148,16 @@ pub fn exact_turns(start: f64, rate: f64, time: f64) -> (f64, i128) {
 pub fn parts(numerator: i128, denominator: i128) -> (f64, i128) {
     let rest = numerator.rem_euclid(denominator);
     (rest as f64 / denominator as f64, numerator.div_euclid(denominator))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_do_not_matter() {
+        let coarse = speeds_at(2.0, 6.49, &[1.0, 4.0], 2e-3);
+        let fine = speeds_at(2.0, 6.49, &[1.0, 4.0], 5e-4);
+        assert!(coarse.iter().zip(fine).all(|(a, b)| (a - b).abs() < 1e-5));
+    }
 }

@@ -391,9 +391,9 @@ fn released_drops_are_counted_to_the_last() {
 fn sizes_of_drips_are_their_sums() {
     let (mut measured, mut fit, mut classes) = (Worst::default(), Worst::default(), Worst::default());
     let mut apart = 0.0_f64;
-    for leaf in 0..3 {
-        let kind = LeafType::ALL[leaf];
+    for (leaf, (kind, row)) in LeafType::ALL.into_iter().zip(DRIP_VOLUME_SHARES).enumerate() {
         let sizes = DripSizes::measured(kind);
+        assert_eq!(sizes.classes(), row.len());
         let table = |d: f64| reference::drip_volume_density(leaf, d);
         let whole = |n| reference::drip_sum(table, n, 8.0);
         for (value, expected) in [
@@ -407,7 +407,7 @@ fn sizes_of_drips_are_their_sums() {
         ] {
             measured.relative(value, expected, 1e-30, || format!("{kind:?}"));
         }
-        for class in 0..sizes.classes() {
+        for (class, share) in row.into_iter().enumerate() {
             let (from, to) = (1.0 + 0.5 * class as f64, 1.5 + 0.5 * class as f64);
             let numbers = (reference::drip_sum(table, 3, to) - reference::drip_sum(table, 3, from)) / whole(3);
             classes.absolute(sizes.number_share(class), numbers, || {
@@ -418,7 +418,7 @@ fn sizes_of_drips_are_their_sums() {
             fit.relative(gaussian_drip_share(kind, middle), printed, 1e-30, || {
                 format!("{kind:?} at {middle} mm")
             });
-            apart = apart.max((gaussian_drip_share(kind, middle) - DRIP_VOLUME_SHARES[leaf][class]).abs());
+            apart = apart.max((gaussian_drip_share(kind, middle) - share).abs());
         }
     }
     measured.assert_below(1e-9, 12);

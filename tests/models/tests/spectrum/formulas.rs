@@ -469,7 +469,7 @@ proptest! {
         let air = DVec3::new(wind, 0.0, 0.0);
         let caught = |angle: f64| sizes.rain_on_surface_mm_h(DVec3::new(-angle.sin(), angle.cos(), 0.0), air, 0.2, 8.0, terminal_velocity);
         // Flat and upright part add up to more than any slant between.
-        prop_assert!(caught(tilt) <= caught(0.0) + caught(1.570_796) + 1e-6 * r);
+        prop_assert!(caught(tilt) <= caught(0.0) + caught(core::f64::consts::FRAC_PI_2) + 1e-6 * r);
         prop_assert!(caught(tilt) >= 0.0 && caught(0.0) <= r * (1.0 + 2e-6));
         let count = sizes.impacts_on_surface_per_m2_s(DVec3::Y, air, 0.2, 8.0, terminal_velocity);
         prop_assert!((count / sizes.impacts_per_m2_s(0.2, 8.0, terminal_velocity) - 1.0).abs() < 1e-9);
