@@ -15,7 +15,7 @@ const LARGEST_MEAN: f64 = 1e6;
 /// own. `mean` held in [0, 1e6], what is not a number counts as 0; costs about `mean` steps. Units: none.
 /// Source: inverse of the cumulative distribution.
 ///
-/// Error: exact, the count of the same 48 bits in the summed distribution; over 20 000 counts mean and single chances
+/// Error: exact, the count of the same bits in the summed distribution; over 20 000 counts mean and single chances
 /// within four standard deviations, variance within 5 % and four of them. Chances below 4e-15 do not occur.
 #[must_use]
 pub fn hashed_poisson(mean: f64, key: [u32; 3]) -> u32 {
