@@ -33,7 +33,9 @@ const LOW_SHARE: f64 = 0.2;
 /// Share of the drip in the four radial classes of a crown `thickness_m` thick.
 ///
 /// Linear between the rows, so the sum stays 1; `thickness_m` held in [4.8, 7.8] m, what is not a number counts as 4.8.
-/// Units: none. Source: [`RADIAL_SHARES`]. Error: rounding; trees differ, and wind undoes the pattern.
+/// Units: none. Source: [`RADIAL_SHARES`].
+///
+/// Error: 1e-15; trees differ, and wind undoes the pattern.
 #[must_use]
 pub fn radial_shares(thickness_m: f64) -> [f64; 4] {
     let x = clamped(thickness_m, RADIAL_THICKNESSES_M[0], RADIAL_THICKNESSES_M[3]) - RADIAL_THICKNESSES_M[0];
@@ -45,13 +47,21 @@ pub fn radial_shares(thickness_m: f64) -> [f64; 4] {
 /// The radial class, 0 to 3, of a place `radius_m` from the trunk of a crown of `crown_radius_m`: that of the nearest
 /// measured distance, scaled with the crown.
 ///
-/// Places outside the crown belong to the last class; so do all without a crown. What is not a number counts as 0.
+/// Places outside the crown belong to the last class; so do all without a crown (a radius that is not above 0). A
+/// `radius_m` that is not a number counts as 0.
+///
+/// Error: exact, save within 1e-12 of the middle between two distances, where rounding decides; trees differ.
 #[must_use]
 pub fn radial_class(radius_m: f64, crown_radius_m: f64) -> usize {
     if radius_m.is_nan() || radius_m <= 0.0 {
         return 0;
     }
-    let share = radius_m / crown_radius_m;
+    // Without a crown every place is outside.
+    let share = if crown_radius_m > 0.0 {
+        radius_m / crown_radius_m
+    } else {
+        1.0
+    };
     CLASS_ENDS[..3].iter().position(|&end| share < end).unwrap_or(3)
 }
 
@@ -73,7 +83,10 @@ pub struct CrownPlace {
 ///
 /// `crown_radius_m` in m, held in [0, 1000], what is not a number counts as 0. The same integers give the same place.
 /// Classes are taken in turn by an additive recurrence, so that even a few places follow the shares.
-/// Source: choice; rings midway between the measured distances. Error: shares of n places at most 3/n off.
+/// Source: choice; rings midway between the measured distances.
+///
+/// Error: shares of n places at most 3/n off; over 40 000 places the evenness of each ring in area, angle and height
+/// (χ² over 64 bins) within five standard deviations.
 #[must_use]
 pub fn crown_place(seed: u32, index: u32, crown_radius_m: f64, thickness_m: f64) -> CrownPlace {
     let radius = clamped(crown_radius_m, 0.0, 1000.0);

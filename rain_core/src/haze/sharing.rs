@@ -27,7 +27,7 @@ const MAX_TABLE_RANGE_M: f64 = MID_END_M[1] / 1.2;
 
 /// t²(3 − 2t) between `from` and `to` (`from` < `to`), 0 before, 1 after. NaN gives 0. Units: none.
 ///
-/// Error: rounding.
+/// Error: 1e-15.
 #[must_use]
 pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
     let t = (x - from) / (to - from);
@@ -65,7 +65,7 @@ fn way(s: f64) -> f64 {
 ///
 /// `distance_m`: from the eye, m; `range_m`: z of the drop or class, m; below 0.25 m, or NaN, nothing is drawn.
 ///
-/// Error: rounding.
+/// Error: 1e-15.
 #[must_use]
 pub fn near_weight(distance_m: f64, range_m: f64) -> f64 {
     if range_m.is_nan() || range_m < MIN_RANGE_M {
@@ -90,7 +90,7 @@ pub fn near_depth_m(way_m: f64, range_m: f64) -> f64 {
 
 /// Where the middle tier of a class starts, b = 0.8 z in [3.2, 24]. Units: m. `range_m`: m; NaN counts as 0.
 ///
-/// Error: none.
+/// Error: exact, one product held between its ends.
 #[must_use]
 pub fn mid_start_m(range_m: f64) -> f64 {
     let start = 0.8 * range_m;
@@ -106,7 +106,7 @@ pub fn mid_start_m(range_m: f64) -> f64 {
 ///
 /// Arguments as in [`near_weight`].
 ///
-/// Error: rounding.
+/// Error: 1e-15.
 #[must_use]
 pub fn mid_weight(distance_m: f64, range_m: f64) -> f64 {
     let b = mid_start_m(range_m);
@@ -128,7 +128,7 @@ pub fn mid_depth_m(way_m: f64, range_m: f64) -> f64 {
 /// [`mid_weight`].
 /// Units: none, in [0, 1].
 ///
-/// Error: 1e-12.
+/// Error: 1e-13 m over the card's depth: 1e-13 from cells of 0.5 m on, 1e-10 at 1 mm.
 #[must_use]
 pub fn card_weight(distance_m: f64, cell_m: f64, range_m: f64) -> f64 {
     let a = if cell_m > 1e-3 { cell_m.min(1e3) } else { 1e-3 };
@@ -140,7 +140,7 @@ pub fn card_weight(distance_m: f64, cell_m: f64, range_m: f64) -> f64 {
 ///
 /// `extinction_per_m`: geometric extinction of its class, 1/m; `cell_m`: a, m; negative or NaN products count as 0.
 ///
-/// Error: rounding.
+/// Error: 1e-15 relative.
 #[must_use]
 pub fn card_coverage(extinction_per_m: f64, cell_m: f64) -> f64 {
     obscured(extinction_per_m * cell_m)
@@ -151,7 +151,7 @@ pub fn card_coverage(extinction_per_m: f64, cell_m: f64) -> f64 {
 /// `extinction_per_m`: σ_geo, 1/m ≥ 0; `efficiency`: Q, at least `drawn_share`; `way_m`: s, m; `range_m`: s_n, m;
 /// `drawn_share`: q, clamped to [0, 1]; NaN counts as 0. Units: none, ≥ 0.
 ///
-/// Error: rounding.
+/// Error: 1e-15 of Q σ s.
 #[must_use]
 pub fn single_range_fog_depth(
     extinction_per_m: f64,
@@ -177,7 +177,8 @@ pub struct DrawnClass {
 
 /// The account of one rain state and one view. 208 bytes; nothing is allocated.
 ///
-/// Error: e^(−τ_fog) times the drops' mean transmittance is e^(−Qσs) within 1e-13 against the drops' integral.
+/// Error: e^(−τ_fog) times the drops' mean transmittance is e^(−Qσs) within 1e-13 against the drops' integral;
+/// the whole depth and its sum of parts 1e-10 relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HazeSharing {
     geometric_per_m: f64,

@@ -19,7 +19,7 @@ pub const MAX_VISIBILITY_M: f64 = 1e9;
 /// `extinction_per_m`: σ, 1/m; negative, 0 or NaN: 1e9. `threshold`: contrast, clamped to [1e-6, 1]; NaN counts as
 /// 0.02.
 ///
-/// Error: rounding.
+/// Error: 1e-15 relative; observers differ by a factor of two.
 #[must_use]
 pub fn visibility_m(extinction_per_m: f64, threshold: f64) -> f64 {
     let distance = depth_of(threshold) / extinction_per_m;
@@ -32,7 +32,9 @@ pub fn visibility_m(extinction_per_m: f64, threshold: f64) -> f64 {
 
 /// The inverse: extinction at which `visibility_m` (m, clamped to [1e-3, 1e9], NaN counts as 1e9) is seen. Units: 1/m.
 ///
-/// `threshold` as in [`visibility_m`]. Error: rounding.
+/// `threshold` as in [`visibility_m`].
+///
+/// Error: 1e-15 relative.
 #[must_use]
 pub fn extinction_for_visibility_per_m(visibility_m: f64, threshold: f64) -> f64 {
     let v = if visibility_m.is_nan() {
@@ -47,7 +49,7 @@ pub fn extinction_for_visibility_per_m(visibility_m: f64, threshold: f64) -> f64
 ///
 /// `extinction_per_m`: 1/m, `distance_m`: m; negative or NaN products count as 0.
 ///
-/// Error: rounding.
+/// Error: 1e-15 relative.
 #[must_use]
 pub fn contrast_at(extinction_per_m: f64, distance_m: f64) -> f64 {
     transmittance(extinction_per_m * distance_m)

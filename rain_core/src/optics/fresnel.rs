@@ -21,6 +21,8 @@ pub struct Polarised {
 
 impl Polarised {
     /// Of unpolarised light.
+    ///
+    /// Error: exact, the mean of both.
     #[must_use]
     pub fn mean(self) -> f64 {
         0.5 * (self.s + self.p)
@@ -78,7 +80,7 @@ pub fn fresnel_from_inside(cos_incidence: f64, index: f64) -> f64 {
 /// [`fresnel`] in single precision, robust from c = 0 (F = 1) to 1, total reflection included.
 ///
 /// Error: 5e-7 against the double form for n in [1.1, 2]; for n in [0.5, 0.75] 1e-5 where |n² − 1 + c²| > 2e-5, up to
-/// 0.02 nearer to the critical angle, where F rises vertically.
+/// 0.003 nearer to the critical angle, where F rises vertically.
 #[must_use]
 #[inline]
 pub fn fresnel_f32(cos_incidence: f32, relative_index: f32) -> f32 {
@@ -115,7 +117,7 @@ pub(super) fn fresnel_polarised_f32(cos_incidence: f32, relative_index: f32) -> 
 
 /// Reflectance at normal incidence, ((n − 1)/(n + 1))². `relative_index` as in [`fresnel`]. Units: none.
 ///
-/// Error: rounding.
+/// Error: 4e-16.
 #[must_use]
 pub fn normal_reflectance(relative_index: f64) -> f64 {
     let n = index(relative_index);
@@ -125,7 +127,7 @@ pub fn normal_reflectance(relative_index: f64) -> f64 {
 
 /// Schlick's approximation from outside, F₀ + (1 − F₀)(1 − c)⁵. Schlick 1994. Arguments as in [`fresnel`], n ≥ 1.
 ///
-/// Error: against [`fresnel`] at n = 1.333 at most 0.0593, at 83.8°.
+/// Error: 1e-15 against the formula by angles; against [`fresnel`] at n = 1.333 at most 0.0593, at 83.8°.
 #[must_use]
 #[inline]
 pub fn schlick(cos_incidence: f64, relative_index: f64) -> f64 {
@@ -158,7 +160,9 @@ pub fn schlick_f32(cos_incidence: f32, normal_reflectance: f32) -> f32 {
 
 /// Angle of incidence at which no light polarised in the plane of incidence is reflected, atan n. Units: rad.
 ///
-/// `relative_index` as in [`fresnel`]. Error: rounding.
+/// `relative_index` as in [`fresnel`].
+///
+/// Error: 6e-15 rad.
 #[must_use]
 pub fn brewster_rad(relative_index: f64) -> f64 {
     ops::atan2(index(relative_index), 1.0)
@@ -166,10 +170,14 @@ pub fn brewster_rad(relative_index: f64) -> f64 {
 
 /// Angle of incidence from inside beyond which all light is reflected, asin(1/n). Units: rad; π/2 for n = 1.
 ///
-/// `index`: of the medium, clamped to [1, 10], NaN counts as 1. Error: rounding.
+/// `index`: of the medium, clamped to [1, 10], NaN counts as 1.
+///
+/// Error: 6e-15 rad.
 #[must_use]
 pub fn critical_angle_rad(index: f64) -> f64 {
-    ops::asin(1.0 / self::index(index).max(1.0))
+    let n = self::index(index).max(1.0);
+    // The arc sine of 1/n, where its tangent is sharper: near n = 1 the arc is steep.
+    ops::atan2(1.0, ops::sqrt((n - 1.0) * (n + 1.0)))
 }
 
 /// Mean reflectance for diffuse light from outside, 2∫F c dc. Duntley 1942. Units: none.
@@ -201,7 +209,9 @@ pub fn hemispherical_mean(index: f64) -> f64 {
 
 /// Mean reflectance for diffuse light from inside, 1 − (1 − R̄)/n²: total reflection included. Units: none.
 ///
-/// `index` as in [`hemispherical_mean`]. Error: as there.
+/// `index` as in [`hemispherical_mean`].
+///
+/// Error: 1e-13 against 2∫F c dc from inside.
 #[must_use]
 pub fn hemispherical_mean_inside(index: f64) -> f64 {
     let n = self::index(index).max(1.0);

@@ -12,24 +12,32 @@ use super::drop_sizes::DropSizes;
 use super::spectrum::{FLUX_FACTOR, diameters, power};
 
 impl DropSizes {
-    /// Rain rate, R = 6π·10⁻⁴ ∫ N v D³ dD. Units: mm/h. Error: 2e-6 relative.
+    /// Rain rate, R = 6π·10⁻⁴ ∫ N v D³ dD. Units: mm/h.
+    ///
+    /// Error: 2e-6 relative.
     pub fn rain_rate_mm_h(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         FLUX_FACTOR * self.flux_moment(3, a_mm, b_mm, speed_m_s)
     }
 
-    /// Drops in the air. Units: m⁻³. Error: 1e-9 relative; for D < 0.5 mm nature differs by factors.
+    /// Drops in the air. Units: m⁻³.
+    ///
+    /// Error: 1e-9 relative; for D < 0.5 mm nature differs by factors.
     #[must_use]
     pub fn number_per_m3(&self, a_mm: f64, b_mm: f64) -> f64 {
         self.moment(0, a_mm, b_mm)
     }
 
-    /// Liquid water, (π/6)·10⁻³ ∫ N D³ dD with water of 1000 kg/m³. Units: g/m³. Error: 1e-9 relative.
+    /// Liquid water, (π/6)·10⁻³ ∫ N D³ dD with water of 1000 kg/m³. Units: g/m³.
+    ///
+    /// Error: 1e-9 relative.
     #[must_use]
     pub fn liquid_water_g_m3(&self, a_mm: f64, b_mm: f64) -> f64 {
         PI / 6.0 * 1e-3 * self.moment(3, a_mm, b_mm)
     }
 
-    /// Geometric extinction, σ_geo = (π/4)·10⁻⁶ ∫ N D² dD. Units: m⁻¹. Error: 1e-9 relative.
+    /// Geometric extinction, σ_geo = (π/4)·10⁻⁶ ∫ N D² dD. Units: m⁻¹.
+    ///
+    /// Error: 1e-9 relative.
     #[must_use]
     pub fn extinction_per_m(&self, a_mm: f64, b_mm: f64) -> f64 {
         FRAC_PI_4 * 1e-6 * self.moment(2, a_mm, b_mm)
@@ -37,7 +45,9 @@ impl DropSizes {
 
     /// Volume median diameter of the drops in the air: half of their water is in smaller ones. Units: mm.
     ///
-    /// 0 when there is no drop. Error: 3e-6 mm.
+    /// 0 when there is no drop.
+    ///
+    /// Error: 3e-6 mm.
     #[must_use]
     pub fn volume_median_air_mm(&self, a_mm: f64, b_mm: f64) -> f64 {
         self.median(a_mm, b_mm, |_| 1.0, |d| self.moment(3, a_mm, d))
@@ -45,7 +55,9 @@ impl DropSizes {
 
     /// Volume median diameter of the drops that reach the ground: half of the rain falls in smaller ones. Units: mm.
     ///
-    /// 0 when there is no drop. Error: 3e-6 mm.
+    /// 0 when there is no drop.
+    ///
+    /// Error: 3e-6 mm.
     pub fn volume_median_ground_mm(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         self.median(a_mm, b_mm, &speed_m_s, |d| self.flux_moment(3, a_mm, d, &speed_m_s))
     }
@@ -87,7 +99,9 @@ impl DropSizes {
     /// Flux-weighted mean of 1/v, ∫ N D³ dD/∫ N v D³ dD: the share of the rain that a wall catches per m/s of wind, and
     /// the way that wind carries rain sideways per metre of fall. Units: s/m.
     ///
-    /// 0 when there is no drop. Error: 2e-6 relative. Source: Lacy 1965 for the form.
+    /// 0 when there is no drop.
+    ///
+    /// Error: 2e-6 relative. Source: Lacy 1965 for the form.
     pub fn mean_inverse_velocity_s_m(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         let flux = self.flux_moment(3, a_mm, b_mm, speed_m_s);
         if flux > 0.0 {

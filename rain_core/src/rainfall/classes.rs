@@ -1,7 +1,7 @@
 //! The twelve size classes of the drop field: all drops of a class move rigidly at one speed.
 
 use super::terminal_velocity::{density_factor, terminal_velocity};
-use crate::error::clamped;
+use crate::error::{clamped, clamped_f32};
 
 /// Number of size classes.
 pub const CLASS_COUNT: usize = 12;
@@ -38,6 +38,9 @@ pub const REFERENCE_SLOPE_PER_MM: f64 = 2.0;
 pub const REFERENCE_N0_PER_M3_MM: f64 = 8000.0;
 
 /// One size class with what the drop field needs of it.
+///
+/// Error: diameters 1e-6 relative, counts 1e-11 relative, speeds in other air 1e-15 relative; all drops of a
+/// class share one speed, 4 to 5 % rms from their own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SizeClass {
     /// Smallest diameter. Units: mm.
@@ -85,15 +88,17 @@ impl SizeClass {
     }
 
     /// Diameter for a uniform `u` in [0, 1): inverse of the reference distribution inside the class. Units: mm.
+    ///
+    /// `u` held in [0, 1]; what is not a number counts as 0.
     #[must_use]
     pub fn diameter_mm(&self, u: f32) -> f32 {
-        let e = self.exp_min as f32 - u * self.exp_span as f32;
+        let e = self.exp_min as f32 - clamped_f32(u, 0.0, 1.0) * self.exp_span as f32;
         -0.5 * crate::ops::lnf(e)
     }
 
     /// Fall speed in air of another density, class speed × factor of the class's middle diameter. Units: m/s.
     ///
-    /// `air_density`: kg/m³, domain [0.3, 2].
+    /// `air_density`: kg/m³, domain [0.3, 2], held there; what is not a number counts as the standard density.
     #[must_use]
     pub fn speed_in(&self, air_density: f64) -> f64 {
         self.speed_m_s * density_factor(0.5 * (self.min_mm + self.max_mm), air_density)
@@ -105,7 +110,7 @@ impl SizeClass {
 /// `diameter_mm` in mm, `focal_px` in pixels, `exposure_s` in s, each held in [0, 1e6]; NaN counts as 0. Units: m, in
 /// [0, 1e9]: 0 without a drop or a picture, 1e9 without an exposure.
 ///
-/// Error: rounding.
+/// Error: 1e-13 relative above 0.1 mm with the same fit of the fall speed, which is off by up to 1.3 % from 0.5 mm on.
 #[must_use]
 pub fn visible_range_m(diameter_mm: f64, focal_px: f64, exposure_s: f64) -> f64 {
     let [diameter_mm, focal_px, exposure_s] = [diameter_mm, focal_px, exposure_s].map(|x| clamped(x, 0.0, 1e6));

@@ -9,6 +9,7 @@ use glam::{DVec3, IVec3, Vec3, Vec4};
 use super::classes::{SizeClass, visible_range_m};
 use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_place, for_each_drop};
 use super::spectrum::Spectrum;
+use crate::error::clamped;
 use crate::hash::unit_f32;
 
 /// Nothing is drawn singly beyond this range. Units: m.
@@ -65,14 +66,24 @@ pub struct DrawRange {
 }
 
 impl DrawRange {
-    /// z_s(D). `diameter_mm` in mm. Units: m.
+    /// z_s(D). `diameter_mm` in mm. Units: m, in [0, 15].
+    ///
+    /// A quality that is not above 0 draws nothing; the rest as [`visible_range_m`].
+    ///
+    /// Error: 1e-13 relative above 0.1 mm.
     #[must_use]
     pub fn at(&self, diameter_mm: f64) -> f64 {
-        (self.kappa * visible_range_m(diameter_mm, self.focal_px, self.exposure_s)).min(RANGE_CAP_M)
+        let range = self.kappa * visible_range_m(diameter_mm, self.focal_px, self.exposure_s);
+        if range > 0.0 { range.min(RANGE_CAP_M) } else { 0.0 }
     }
 }
 
-/// Expected number of drops drawn at quality `kappa` (fade range included).
+/// Expected number of drops drawn at quality `kappa` (fade range included): Ω/3 ∫ N (1.2 z_s)³ dD over the classes.
+///
+/// `kappa`: none; `view` gives Ω (sr, held in [0, 4π]), focal length and exposure. What is not a number counts as 0.
+/// Two panels a class, each with the range of its middle. Units: none.
+///
+/// Error: 1.6 % against the integral over diameters; drops in the margins at the view's sides come on top, up to 45 %.
 #[must_use]
 pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) -> f64 {
     let range = DrawRange {
@@ -80,6 +91,7 @@ pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) ->
         focal_px: view.focal_px,
         exposure_s: view.exposure_s,
     };
+    let solid_angle = clamped(view.solid_angle_sr, 0.0, 4.0 * core::f64::consts::PI);
     let mut sum = 0.0;
     for class in SizeClass::all() {
         // Two panels a class: the range changes by a third inside one.
@@ -91,7 +103,7 @@ pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) ->
                 (middle, class.max_mm)
             };
             let reach = FADE_END * range.at(0.5 * (a + b));
-            sum += spectrum.moment(0, a, b) * view.solid_angle_sr / 3.0 * reach * reach * reach;
+            sum += spectrum.moment(0, a, b) * solid_angle / 3.0 * reach * reach * reach;
         }
     }
     sum
@@ -99,7 +111,10 @@ pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) ->
 
 /// The quality κ at which a view draws `budget` drops, in [0, 64]; 64 when the budget is never reached.
 ///
-/// Bisection on the class table; units: none.
+/// Bisection on the class table; units: none. A budget that is not above 0, or not a number, gives 0.
+///
+/// Error: 1e-13 against the root of [`expected_drops`], which gives the budget back to 1e-8 relative from a millionth
+/// of a drop on; the rest is that of [`expected_drops`].
 #[must_use]
 pub fn quality_for_budget(spectrum: &Spectrum, view: &RainViewVolume, budget: f64) -> f64 {
     const MAX: f64 = 64.0;
@@ -142,6 +157,9 @@ pub struct Container {
 
 impl Container {
     /// Fills the container for one view. At most `max_drops` records are written; a cut is reported by `false`.
+    ///
+    /// Error: the drops are those of [`for_each_drop`] within reach and view, save within 1e-4 m of their borders;
+    /// positions 1e-5 m, presence 1e-4.
     #[must_use = "false says that drops were left out"]
     pub fn fill(
         &mut self,
@@ -251,6 +269,8 @@ impl Container {
 
 impl DropRecord {
     /// Position relative to the eye, metres: what the GPU computes from the record.
+    ///
+    /// Error: 1e-5 m.
     #[must_use]
     pub fn position(&self, seed: u64, placement: &[ClassPlacement]) -> Vec3 {
         let k = (self.drop & 15) as usize;

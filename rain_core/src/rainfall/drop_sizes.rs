@@ -112,6 +112,8 @@ pub enum SizeLaw {
 
 impl SizeLaw {
     /// N(D). Units: m⁻³ mm⁻¹. As [`Spectrum::concentration`].
+    ///
+    /// Error: that of its law, the same bits.
     #[must_use]
     pub fn concentration(&self, diameter_mm: f64) -> f64 {
         match self {
@@ -121,6 +123,8 @@ impl SizeLaw {
     }
 
     /// N₀, or N_w of a gamma distribution. Units: m⁻³ mm⁻¹.
+    ///
+    /// Error: that of its law, the same bits.
     #[must_use]
     pub fn n0_per_m3_mm(&self) -> f64 {
         match self {
@@ -130,6 +134,8 @@ impl SizeLaw {
     }
 
     /// Λ, (4 + µ)/D_m of a gamma distribution. Units: mm⁻¹.
+    ///
+    /// Error: that of its law, the same bits.
     #[must_use]
     pub fn slope_per_mm(&self) -> f64 {
         match self {
@@ -191,6 +197,8 @@ impl From<GammaSpectrum> for DropSizes {
 impl DropSizes {
     /// Sizes of a kind of rain that carry exactly `intensity_mm_h` over all diameters with [`terminal_velocity`].
     ///
+    /// Error: 2e-6 of the rain rate.
+    ///
     /// # Errors
     /// When `intensity_mm_h` is outside [0, 500] or not finite.
     pub fn new(kind: RainKind, intensity_mm_h: f64) -> Result<Self, ConfigError> {
@@ -198,6 +206,8 @@ impl DropSizes {
     }
 
     /// As [`DropSizes::new`], with another fall law (mm in, m/s out).
+    ///
+    /// Error: 2e-6 of the rain rate.
     ///
     /// # Errors
     /// When `intensity_mm_h` is outside [0, 500] or not finite.
@@ -214,6 +224,8 @@ impl DropSizes {
     /// and less than half of it in the lightest drizzle. A gamma distribution has no published rate to miss and is that
     /// of [`DropSizes::new`].
     ///
+    /// Error: that of [`Spectrum::published`], the same bits.
+    ///
     /// # Errors
     /// When `intensity_mm_h` is outside [0, 500] or not finite.
     pub fn published(kind: RainKind, intensity_mm_h: f64) -> Result<Self, ConfigError> {
@@ -224,6 +236,8 @@ impl DropSizes {
     }
 
     /// A blend of kinds at one rain rate: N(D) = Σ share N_kind(D), shares scaled to add up to 1.
+    ///
+    /// Error: N(D) 1e-12 relative, the rain rate 2e-6.
     ///
     /// # Errors
     /// When `intensity_mm_h` is outside [0, 500], a share negative, or one not finite; when no share is above 0; when
@@ -250,6 +264,8 @@ impl DropSizes {
     }
 
     /// N(D). Units: m⁻³ mm⁻¹. `diameter_mm` in mm, domain [0, ∞); a negative or NaN diameter gives 0.
+    ///
+    /// Error: 1e-12 relative.
     #[must_use]
     pub fn concentration(&self, diameter_mm: f64) -> f64 {
         self.parts()
@@ -258,7 +274,9 @@ impl DropSizes {
             .sum()
     }
 
-    /// ∫ N Dⁿ dD over [a, b] mm, in closed form. Units: m⁻³ mmⁿ. As [`Spectrum::moment`]. Error: 1e-9 relative.
+    /// ∫ N Dⁿ dD over [a, b] mm, in closed form. Units: m⁻³ mmⁿ. As [`Spectrum::moment`].
+    ///
+    /// Error: 1e-9 relative.
     #[must_use]
     pub fn moment(&self, n: u32, a_mm: f64, b_mm: f64) -> f64 {
         self.parts()
@@ -287,6 +305,8 @@ impl DropSizes {
     }
 
     /// ∫ N Dⁿ v dD over [a, b] mm with a fall law (mm in, m/s out). Units: m⁻² s⁻¹ mmⁿ. As [`DropSizes::integral`].
+    ///
+    /// Error: 2e-6 relative.
     pub fn flux_moment(&self, n: u32, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         self.integral(a_mm, b_mm, |d| power(d, n) * speed_m_s(d))
     }

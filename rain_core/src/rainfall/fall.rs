@@ -25,7 +25,7 @@ const MAX_INITIAL_RATIO: f64 = 1e6;
 /// `diameter_mm`: mm, clamped to [0, 8.564], where the parabola has its top; NaN counts as 0. Units: none.
 /// Fitted to the integration with the drag of Clift & Gauvin 1970 between 0.5 and 5 mm.
 ///
-/// Error: none against the formula; what it does to the speed is said at [`Fall`].
+/// Error: 1e-15 relative; what it does to the speed is said at [`Fall`].
 #[must_use]
 pub fn drag_stiffness(diameter_mm: f64) -> f64 {
     let d = if diameter_mm > 0.0 { diameter_mm.min(8.564) } else { 0.0 };
@@ -46,8 +46,9 @@ pub struct FallState {
 /// All initial speeds are ≥ 0 and may exceed the terminal speed; NaN and negative ones count as 0. Times and heights:
 /// NaN and negative ones count as 0, those beyond 1e6 (s, m) as 1e6.
 ///
-/// Error: `speed_m_s`, `distance_m`, `speed_after_m_s`, `time_to_fall_s` at most 1e-11 relative against the integrated
-/// drag law. Against the integration with Clift & Gauvin's drag at most 0.5 % of v_t (c = 1: 4.4 %); see the module.
+/// Error: `speed_m_s`, `distance_m`, `speed_after_m_s`, `time_to_fall_s`, `distance_to_share_m` at most 1e-11 relative
+/// against the integrated drag law. Against the integration with Clift & Gauvin's drag at most 0.5 % of v_t (c = 1: 4.4
+/// %); see the module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fall {
     terminal_m_s: f64,

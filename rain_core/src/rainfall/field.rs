@@ -12,10 +12,17 @@ use serde::{Deserialize, Serialize};
 
 use super::classes::{CLASS_COUNT, REFERENCE_N0_PER_M3_MM, REFERENCE_SLOPE_PER_MM, SizeClass};
 use super::spectrum::Spectrum;
+use crate::error::clamped_f32;
 use crate::hash::{open_unit_f32, pcg3d, unit_f32};
 
 /// Half-width of the soft threshold at which drops appear and vanish, as a share of their rank. Units: none.
 pub const SOFT_EDGE: f32 = 0.05;
+
+/// Largest rank that is looked for: no rain fills a cell with a tenth as many drops. Units: none.
+const MAX_RANK: f32 = 65_536.0;
+
+/// Largest diameter that a threshold is asked for. Units: mm.
+const LARGEST_MM: f32 = 10.0;
 
 /// One drop in its class frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +37,9 @@ pub struct Drop {
 
 /// The key of a cell: all randomness of its drops comes from here.
 ///
-/// `cell`: lattice coordinates (low 32 bits count); `class` in 0..12.
+/// `cell`: lattice coordinates (low 32 bits count); `class` in 0..12. Any integers give a key.
+///
+/// Error: exact, the same integers as the published hash in 128-bit arithmetic.
 #[must_use]
 pub fn cell_key(seed: u64, class: u32, cell: IVec3) -> [u32; 3] {
     let stream = pcg3d([seed as u32, (seed >> 32) as u32, class]);
@@ -42,6 +51,8 @@ pub fn cell_key(seed: u64, class: u32, cell: IVec3) -> [u32; 3] {
 }
 
 /// Hash of drop `index`: [rank increment, diameter, unused].
+///
+/// Error: exact, the same integers as the published hash in 128-bit arithmetic.
 #[must_use]
 pub fn drop_marks(key: [u32; 3], index: u32) -> [u32; 3] {
     pcg3d([
@@ -52,6 +63,8 @@ pub fn drop_marks(key: [u32; 3], index: u32) -> [u32; 3] {
 }
 
 /// Hash of drop `index`: [x, y, z] inside the cell.
+///
+/// Error: exact, the same integers as the published hash in 128-bit arithmetic.
 #[must_use]
 pub fn drop_place(key: [u32; 3], index: u32) -> [u32; 3] {
     pcg3d([
@@ -62,7 +75,14 @@ pub fn drop_place(key: [u32; 3], index: u32) -> [u32; 3] {
 }
 
 /// Visits the drops of one cell in order of rank, up to `max_rank`.
+///
+/// `max_rank`: none, held in [0, 65 536], what is not a number counts as 0. Allocates nothing.
+///
+/// Error: places exact, ranks and diameters 1e-6 relative against the same words in double precision. Over 200 000
+/// cells the chance of each count is Poisson's within five standard deviations, places and diameters are as even as
+/// theirs (χ² over 256 bins) within as many.
 pub fn for_each_drop(class: &SizeClass, key: [u32; 3], max_rank: f32, mut visit: impl FnMut(u32, Drop)) {
+    let max_rank = clamped_f32(max_rank, 0.0, MAX_RANK);
     let mut rank = 0.0;
     let mut index = 0;
     loop {
@@ -85,6 +105,9 @@ pub fn for_each_drop(class: &SizeClass, key: [u32; 3], max_rank: f32, mut visit:
 }
 
 /// Which drops of a class exist at one rain state: rank below m_k N(D)/n_ref(D).
+///
+/// Error: the threshold 6e-6 relative against m_k N(D)/n_ref(D), the presence 6e-5, its mean over ranks 6e-6 of the
+/// threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Threshold {
     /// m_k N₀/N_ref. Units: none.
@@ -110,9 +133,11 @@ impl Threshold {
     }
 
     /// The rank at which a drop of this diameter is half there. Units: none.
+    ///
+    /// `diameter_mm` in mm, held in [0, 10]; what is not a number counts as 0.
     #[must_use]
     pub fn at(&self, diameter_mm: f32) -> f32 {
-        self.scale * crate::ops::expf(self.slope * diameter_mm)
+        self.scale * crate::ops::expf(self.slope * clamped_f32(diameter_mm, 0.0, LARGEST_MM))
     }
 
     /// Rank beyond which no drop of the class exists, soft edge included.
@@ -122,18 +147,20 @@ impl Threshold {
     }
 
     /// Presence of a drop, 0…1: 1 inside, a soft ramp at its own threshold, so that nothing pops when rain changes.
-    /// The mean over ranks is exactly the threshold.
+    /// The mean over ranks is exactly the threshold. A rank that is not a number is not there.
     #[must_use]
     pub fn presence(&self, drop: &Drop) -> f32 {
         let limit = self.at(drop.diameter_mm);
-        if limit <= 0.0 {
+        if limit <= 0.0 || drop.rank.is_nan() {
             return 0.0;
         }
         (0.5 + (1.0 - drop.rank / limit) / (2.0 * SOFT_EDGE)).clamp(0.0, 1.0)
     }
 }
 
-/// Where each class's frame stands: the integral of its velocity, exact to 1e-10 m after days.
+/// Where each class's frame stands: the integral of its velocity.
+///
+/// Error: 1e-4 m after a day at 60 steps a second (a day's way is 200 to 800 km), 1e-15 of the way for one step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FieldMotion {
@@ -156,14 +183,20 @@ impl Default for FieldMotion {
 
 impl FieldMotion {
     /// Sets every class's velocity from the wind (m/s, where the air goes) and the air's density (kg/m³).
+    ///
+    /// A wind that is not finite counts as calm; the density as in [`SizeClass::speed_in`].
     pub fn set_velocity(&mut self, wind_m_s: DVec3, air_density: f64) {
+        let wind_m_s = if wind_m_s.is_finite() { wind_m_s } else { DVec3::ZERO };
         for (velocity, class) in self.velocity_m_s.iter_mut().zip(SizeClass::all()) {
             *velocity = wind_m_s - DVec3::Y * class.speed_in(air_density);
         }
     }
 
-    /// Moves the field by `dt_s` at the current velocity.
+    /// Moves the field by `dt_s` (s, either sign; nothing happens where it is not finite) at the current velocity.
     pub fn advance(&mut self, dt_s: f64) {
+        if !dt_s.is_finite() {
+            return;
+        }
         for (offset, velocity) in self.offset_m.iter_mut().zip(&self.velocity_m_s) {
             *offset += *velocity * dt_s;
         }
@@ -179,6 +212,9 @@ impl FieldMotion {
 }
 
 /// The eye in a class's lattice: integer cell and fraction, so that single precision suffices at any distance.
+///
+/// Error: cell exact, fraction 6e-8 of a cell against (eye − offset)/edge in double precision: 1e-6 m at 100 km after a
+/// day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LatticeEye {
     /// Cell that holds the eye (low 32 bits).
@@ -189,9 +225,12 @@ pub struct LatticeEye {
 
 impl LatticeEye {
     /// The eye (world metres) seen from a class frame that has moved by `offset_m`.
+    ///
+    /// `cell_m`: edge of a cell, m > 0. What is not finite counts as the frame's origin.
     #[must_use]
     pub fn new(eye_m: DVec3, offset_m: DVec3, cell_m: f64) -> Self {
         let p = (eye_m - offset_m) / cell_m;
+        let p = if p.is_finite() { p } else { DVec3::ZERO };
         let floor = p.floor();
         let wrap = |v: f64| (v as i64) as i32;
         Self {

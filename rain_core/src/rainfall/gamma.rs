@@ -49,6 +49,8 @@ impl GammaClimate {
     pub const ALL: [Self; 3] = [Self::Stratiform, Self::Maritime, Self::Continental];
 
     /// N_w. Units: m⁻³ mm⁻¹.
+    ///
+    /// Error: 1e-9 relative; single showers scatter by factors.
     #[must_use]
     pub fn nw_per_m3_mm(self) -> f64 {
         match self {
@@ -79,6 +81,8 @@ impl GammaSpectrum {
     /// D_m by the rate, and N_w then scaled (by less than 1e-6) so that the rate is carried exactly.
     ///
     /// Below 1e-4 mm/h D_m is that at 1e-4 mm/h and N_w is thinned.
+    ///
+    /// Error: 2e-6 of the rain rate; single showers scatter by factors in N_w.
     ///
     /// # Errors
     /// When `intensity_mm_h` is outside [0, 500] or `shape` outside [0, 20], or one is not finite.
@@ -154,18 +158,24 @@ impl GammaSpectrum {
     }
 
     /// f(µ). Units: none.
+    ///
+    /// Error: 1e-12 relative.
     #[must_use]
     pub fn factor(&self) -> f64 {
         self.factor
     }
 
     /// (4 + µ)/D_m: what Λ is to an exponential. Units: mm⁻¹.
+    ///
+    /// Error: 1e-15 relative.
     #[must_use]
     pub fn slope_per_mm(&self) -> f64 {
         (4.0 + self.shape) / self.mean_diameter_mm
     }
 
     /// Whether N_w and D_m lie on the convective side of log₁₀ N_w = 6.3 − 1.6 D_m. Source: Bringi et al. 2003, 2009.
+    ///
+    /// Error: exact, more than 1e-12 of N_w from the line; the line parts observed clusters, not single showers.
     #[must_use]
     pub fn is_convective(&self) -> bool {
         // ln N_w > ln 10 (6.3 − 1.6 D_m); no drops are not convective.
@@ -176,7 +186,7 @@ impl GammaSpectrum {
     ///
     /// `diameter_mm` in mm, domain [0, ∞); there are no drops of a negative or NaN diameter: 0.
     ///
-    /// Error: 1e-9 relative.
+    /// Error: 1e-12 relative.
     #[must_use]
     pub fn concentration(&self, diameter_mm: f64) -> f64 {
         let x = diameter_mm / self.mean_diameter_mm;
@@ -217,7 +227,9 @@ impl GammaSpectrum {
     }
 
     /// Rain rate carried by diameters in [a, b] mm with a fall law. Units: mm/h. Domain and clamps as in
-    /// [`GammaSpectrum::moment`]. Error: 2e-6 relative.
+    /// [`GammaSpectrum::moment`].
+    ///
+    /// Error: 2e-6 relative.
     pub fn rain_rate_mm_h(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         let Some((a, b)) = diameters(a_mm, b_mm) else {
             return 0.0;

@@ -17,17 +17,23 @@ use crate::constants::WATER_DENSITY;
 use crate::ops;
 
 impl DropSizes {
-    /// Impacts on a horizontal surface, ∫ N v dD, whatever the wind. Units: m⁻² s⁻¹. Error: 2e-6 relative.
+    /// Impacts on a horizontal surface, ∫ N v dD, whatever the wind. Units: m⁻² s⁻¹.
+    ///
+    /// Error: 2e-6 relative.
     pub fn impacts_per_m2_s(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         self.flux_moment(0, a_mm, b_mm, speed_m_s)
     }
 
-    /// Kinetic energy that arrives on the ground in still air, ∫ N v · ½ m v² dD. Units: W/m². Error: 2e-6 relative.
+    /// Kinetic energy that arrives on the ground in still air, ∫ N v · ½ m v² dD. Units: W/m².
+    ///
+    /// Error: 2e-6 relative.
     pub fn kinetic_energy_w_m2(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         PI / 12.0 * WATER_DENSITY * 1e-9 * self.integral(a_mm, b_mm, |d| power(d, 3) * power(speed_m_s(d), 3))
     }
 
-    /// Kinetic energy per depth of rain. Units: J/m² per mm. 0 when dry. Error: 2e-6 relative.
+    /// Kinetic energy per depth of rain. Units: J/m² per mm. 0 when dry.
+    ///
+    /// Error: 2e-6 relative.
     pub fn kinetic_energy_j_m2_mm(&self, a_mm: f64, b_mm: f64, speed_m_s: impl Fn(f64) -> f64) -> f64 {
         let rate = self.rain_rate_mm_h(a_mm, b_mm, &speed_m_s);
         if rate > 0.0 {
@@ -46,7 +52,9 @@ impl DropSizes {
     /// Impacts on a surface of any slant in wind, ∫ N max(0, −w·n) dD with w = wind − v ŷ. Units: m⁻² s⁻¹.
     ///
     /// `normal`: unit vector out of the surface, y up; `wind_m_s`: where the air goes. Vectors that are not finite give
-    /// 0. Error: 1e-4 relative.
+    /// 0.
+    ///
+    /// Error: 1e-4 relative.
     pub fn impacts_on_surface_per_m2_s(
         &self,
         normal: DVec3,
@@ -61,7 +69,9 @@ impl DropSizes {
     /// Rain on a surface of any slant in wind, by its own area. Units: mm/h.
     ///
     /// As [`DropSizes::impacts_on_surface_per_m2_s`]. On a wall that faces the wind U it is R · U · t with the mean
-    /// 1/v, t. Error: 1e-4 relative.
+    /// 1/v, t.
+    ///
+    /// Error: 1e-4 relative.
     pub fn rain_on_surface_mm_h(
         &self,
         normal: DVec3,

@@ -41,7 +41,7 @@ pub fn yoshida_counts_per_m3(intensity_mm_h: f64) -> [f64; 6] {
 ///
 /// The table itself lists [`printed_concentration`], rounded or cut to integers. `intensity_mm_h` as there.
 ///
-/// Error: 1e-13 relative.
+/// Error: 1e-13 relative; the table lists the density.
 #[must_use]
 pub fn nguyenova_counts_per_m3(intensity_mm_h: f64) -> [f64; 6] {
     counts(intensity_mm_h, NGUYENOVA_DIAMETERS_MM, 0.5)

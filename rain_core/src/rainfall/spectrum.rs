@@ -61,6 +61,8 @@ impl Distribution {
     }
 
     /// N₀ as published. Units: m⁻³ mm⁻¹.
+    ///
+    /// Error: exact, the sources' numbers.
     #[must_use]
     pub fn published_n0_per_m3_mm(self) -> f64 {
         match self {
@@ -130,7 +132,9 @@ impl Spectrum {
         }
     }
 
-    /// [`Spectrum::concentration`] in single precision. Error: 1e-5 relative for N > 1e-6 per m³ and mm.
+    /// [`Spectrum::concentration`] in single precision.
+    ///
+    /// Error: 1e-5 relative for N > 1e-6 per m³ and mm.
     #[must_use]
     pub fn concentration_f32(&self, diameter_mm: f32) -> f32 {
         if diameter_mm >= 0.0 {
@@ -168,14 +172,17 @@ impl Spectrum {
         self.n0_per_m3_mm * flux_integral(self.slope_per_mm, n, a_mm, b_mm)
     }
 
-    /// Rain rate carried by diameters in [a, b] mm. Units: mm/h. As [`Spectrum::flux_moment`]. Error: 1e-7 relative.
+    /// Rain rate carried by diameters in [a, b] mm. Units: mm/h. As [`Spectrum::flux_moment`].
+    ///
+    /// Error: 1e-7 relative.
     #[must_use]
     pub fn rain_rate_mm_h(&self, a_mm: f64, b_mm: f64) -> f64 {
         FLUX_FACTOR * self.flux_moment(3, a_mm, b_mm)
     }
 
-    /// Geometric extinction σ_geo = (π/4) ∫ D² N dD over [a, b] mm. Units: m⁻¹. As [`Spectrum::moment`]. Error: 1e-10
-    /// relative.
+    /// Geometric extinction σ_geo = (π/4) ∫ D² N dD over [a, b] mm. Units: m⁻¹. As [`Spectrum::moment`].
+    ///
+    /// Error: 1e-10 relative.
     #[must_use]
     pub fn extinction_per_m(&self, a_mm: f64, b_mm: f64) -> f64 {
         core::f64::consts::FRAC_PI_4 * 1e-6 * self.moment(2, a_mm, b_mm)

@@ -13,8 +13,10 @@ const LARGEST_MEAN: f64 = 1e6;
 ///
 /// Inverse of the distribution at a hashed 48-bit number; means above 30 are split into equal parts with keys of their
 /// own. `mean` held in [0, 1e6], what is not a number counts as 0; costs about `mean` steps. Units: none.
-/// Source: inverse of the cumulative distribution. Error: none up to chances of 4e-15; mean, variance and single
-/// chances of 20 000 counts lie within four standard deviations.
+/// Source: inverse of the cumulative distribution.
+///
+/// Error: exact, the count of the same bits in the summed distribution; over 20 000 counts mean and single chances
+/// within four standard deviations, variance within 5 % and four of them. Chances below 4e-15 do not occur.
 #[must_use]
 pub fn hashed_poisson(mean: f64, key: [u32; 3]) -> u32 {
     let mean = clamped(mean, 0.0, LARGEST_MEAN);
@@ -54,6 +56,9 @@ pub struct ImpactEvent {
 ///
 /// Cells are two-dimensional, fixed to the world; slots are numbered from the start of time and must have one length.
 /// A frame shows those whose moment lies in it, so that two half frames show what a whole one does.
+///
+/// Error: exact, the same words in place, moment and key; over 64 000 impacts their number, and the evenness of places
+/// and moments (χ² over 256 bins, correlations), within five standard deviations.
 pub fn for_each_impact(seed: u32, cell: [i32; 2], slot: u32, mean: f64, mut visit: impl FnMut(ImpactEvent)) {
     let [a, b, c] = hash::pcg3d([cell[0] as u32, cell[1] as u32, slot]);
     let key = hash::pcg3d([a ^ seed, b, c.wrapping_add(seed)]);

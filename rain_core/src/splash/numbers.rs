@@ -12,7 +12,7 @@ pub(super) const FASTEST_M_S: f64 = 1000.0;
 
 /// The numbers that rule an impact of water at 20 °C.
 ///
-/// Error: rounding, 1e-15 relative.
+/// Error: 1e-15 relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactNumbers {
     /// We = ρ v² D/σ, inertia against surface tension.
@@ -50,13 +50,17 @@ impl ImpactNumbers {
 
 /// K = We^½ Re^¼ of an impact: above about 57.7 a drop splashes on a dry smooth wall. Arguments as [`ImpactNumbers`].
 ///
-/// Units: none. Source: Mundo et al. 1995, Stow & Hadfield 1981. Error: rounding.
+/// Units: none. Source: Mundo et al. 1995, Stow & Hadfield 1981.
+///
+/// Error: 1e-15 relative.
 #[must_use]
 pub fn splash_k(diameter_mm: f64, speed_m_s: f64) -> f64 {
     ImpactNumbers::new(diameter_mm, speed_m_s).k
 }
 
-/// [`splash_k`] in single precision. Error: 3e-7 relative.
+/// [`splash_k`] in single precision.
+///
+/// Error: 3e-7 relative.
 #[must_use]
 pub fn splash_k_f32(diameter_mm: f32, speed_m_s: f32) -> f32 {
     const WEBER: f32 = (WATER_DENSITY / WATER_SURFACE_TENSION * 1e-3) as f32;
@@ -67,18 +71,24 @@ pub fn splash_k_f32(diameter_mm: f32, speed_m_s: f32) -> f32 {
 }
 
 /// Mass of a drop of water. `diameter_mm` in mm, held in [0, 100], what is not a number counts as 0. Units: kg.
+///
+/// Error: 2e-15 relative; 0.4 % between 0 and 30 °C.
 #[must_use]
 pub fn water_drop_kg(diameter_mm: f64) -> f64 {
     drop_mass_kg(clamped(diameter_mm, 0.0, LARGEST_MM))
 }
 
-/// Momentum m v of a drop. Arguments as [`ImpactNumbers`]. Units: kg m/s. Error: rounding.
+/// Momentum m v of a drop. Arguments as [`ImpactNumbers`]. Units: kg m/s.
+///
+/// Error: 2e-15 relative.
 #[must_use]
 pub fn impact_momentum_kg_m_s(diameter_mm: f64, speed_m_s: f64) -> f64 {
     water_drop_kg(diameter_mm) * clamped(speed_m_s, 0.0, FASTEST_M_S)
 }
 
-/// Kinetic energy ½ m v² of a drop. Arguments as [`ImpactNumbers`]. Units: J. Error: rounding.
+/// Kinetic energy ½ m v² of a drop. Arguments as [`ImpactNumbers`]. Units: J.
+///
+/// Error: 2e-15 relative.
 #[must_use]
 pub fn impact_energy_j(diameter_mm: f64, speed_m_s: f64) -> f64 {
     let v = clamped(speed_m_s, 0.0, FASTEST_M_S);

@@ -110,7 +110,10 @@ impl Splash {
     /// Deposition up to the threshold (see [`splash_threshold_k`](super::splash_threshold_k)); above it 5 to 30
     /// secondary drops, linear in K/K_threshold up to 19, the fraction decided by hash. Only the speed along the normal
     /// counts. What is not finite in `impact` counts as 0. Water: thrown + retained = the drop. Source: thresholds as
-    /// there; numbers a choice. Error: thrown volume is the sum over [`secondary_drop`] to 1e-6.
+    /// there; numbers a choice.
+    ///
+    /// Error: thrown volume is the sum over [`secondary_drop`], and thrown + retained the drop, to 1e-6 of it; the mean
+    /// count within five standard deviations over 20 000 impacts.
     #[must_use]
     pub fn new(impact: &Impact, key: [u32; 3]) -> Self {
         let impact = impact.sound();
@@ -164,6 +167,8 @@ fn size(key: [u32; 3], index: u32) -> f32 {
 /// Diameter 0.05 to 0.3 D, most of them small; speed 0.1 to 0.5 of the impact's normal speed, small ones faster;
 /// 40° to 70° from the ground; directions evenly about the normal; of the speed along the ground 0.3 is kept. At most
 /// half the impact's speed. Source: choice within measured ranges.
+///
+/// Error: diameter 2e-7 relative, velocity 1e-6 of the impact's speed against the same words in double precision.
 #[must_use]
 pub fn secondary_drop(impact: &Impact, splash: &Splash, key: [u32; 3], index: u32) -> SecondaryDrop {
     let impact = impact.sound();

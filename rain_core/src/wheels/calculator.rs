@@ -22,6 +22,8 @@ pub struct WheelReport {
 
 /// A tyre at `speed_km_h` (negative: backwards) on a film of `film_mm`. The calculator behind `rain model wheel`.
 ///
+/// Error: exact, the same bits as the functions that it gathers.
+///
 /// # Errors
 /// When the tyre is not valid, `speed_km_h` is outside [−720, 720] or `film_mm` outside [0, 1000], or not finite.
 pub fn wheel_on_film(tyre: Tyre, speed_km_h: f64, film_mm: f64) -> Result<WheelReport, ConfigError> {
@@ -39,6 +41,8 @@ pub fn wheel_on_film(tyre: Tyre, speed_km_h: f64, film_mm: f64) -> Result<WheelR
 
 /// [`horne_speed_km_h`] for input that must be refused when it is wrong. The calculator behind `rain model
 /// hydroplaning`. Units: km/h.
+///
+/// Error: that of [`horne_speed_km_h`], the same bits.
 ///
 /// # Errors
 /// When `pressure_kpa` is outside [10, 2000] kPa or not finite.

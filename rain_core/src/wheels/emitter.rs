@@ -6,7 +6,9 @@ use crate::error::clamped;
 ///
 /// `flow_kg_s` in kg/s, held in [0, 1e6]; `life_s` in s, held in [0, 1e4]; `budget` in particles, at least 1;
 /// `least_kg`: mass below which a particle is not split further, held in [1e-12, 1e3] (one drop, for instance). What is
-/// not a number counts as the lower end. Error: rounding.
+/// not a number counts as the lower end.
+///
+/// Error: 1e-15 relative.
 #[must_use]
 pub fn spray_parcel_kg(flow_kg_s: f64, life_s: f64, budget: u32, least_kg: f64) -> f64 {
     let alive = clamped(flow_kg_s, 0.0, 1e6) * clamped(life_s, 0.0, 1e4);
@@ -15,7 +17,9 @@ pub fn spray_parcel_kg(flow_kg_s: f64, life_s: f64, budget: u32, least_kg: f64) 
 
 /// Turns a flow into whole parcels; what is not yet a parcel waits.
 ///
-/// Everything that came in = parcels · their mass + pending, at any step. Error: 1e-12 of the mass.
+/// Everything that came in = parcels · their mass + pending, at any step.
+///
+/// Error: 1e-12 of the mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SprayEmitter {
     pending_kg: f64,

@@ -62,6 +62,8 @@ impl Tyre {
     }
 
     /// Depth of film that the grooves carry, h_tp. Units: mm.
+    ///
+    /// Error: exact, one product; [`Self::carried_share`] is a choice.
     #[must_use]
     pub fn carried_mm(&self) -> f64 {
         self.carried_share * self.tread_mm
@@ -69,6 +71,8 @@ impl Tyre {
 
     /// Film that the grooves can take in under the tyre, K_t times the tread's depth. Units: mm. A choice: deeper water
     /// cannot leave through them.
+    ///
+    /// Error: exact, one product.
     #[must_use]
     pub fn groove_void_mm(&self) -> f64 {
         self.groove_share * self.tread_mm

@@ -14,8 +14,10 @@ const DEEPEST_MM: f64 = 1000.0;
 ///
 /// M_w = ρ b v W on a film W. Capillary adhesion ρ b v (1 − K_t) min(W, h_ca), tread pickup ρ b v K_t min(W, h_tp), bow
 /// and side waves the rest: taken in this order, so that the sum is always M_w. Backwards is as forwards.
-/// Source: Weir, Strange & Heffley 1978, in Flintsch et al. 2014. Error: sum = M_w to 1e-15; the split is geometry,
-/// measured spray scatters by a factor of two.
+/// Source: Weir, Strange & Heffley 1978, in Flintsch et al. 2014.
+///
+/// Error: every part 1e-15 of M_w, their sum = M_w to 1e-15; the split is geometry, measured spray scatters by a factor
+/// of two.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WheelWater {
     /// All water met, M_w.
@@ -74,7 +76,9 @@ fn per_mm(tyre: &Tyre, speed_m_s: f64) -> f64 {
 /// What clings and what the grooves carry flies off above the speeds of [`SprayMechanism::onset_m_s`] and is laid down
 /// again below; what is pushed ahead and aside leaves the track at any speed, and flies above its own onset. So
 /// met = thrown + pushed aside + left. Source: Flintsch et al. 2014; onsets a choice about the 48 to 64 km/h at which
-/// spray was first measured (Pilkington 1990). Error: the sum to 1e-13.
+/// spray was first measured (Pilkington 1990).
+///
+/// Error: the sum and the film left to 1e-15; the onsets are choices.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WheelTrail {
     /// Thrown into the air, by mechanism; `intercepted_kg_s` is the sum. Units: kg/s.

@@ -1,5 +1,7 @@
 //! Shape and oscillation of a drop.
 
+mod formulas;
+
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rain_core::rainfall::{

@@ -1,5 +1,7 @@
 //! Fall from rest and the response to wind.
 
+mod formulas;
+
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

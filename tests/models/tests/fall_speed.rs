@@ -1,5 +1,7 @@
 //! Terminal velocity: measurements, the sources' fits, Beard 1976.
 
+mod formulas;
+
 use proptest::prelude::*;
 use rain_core::rainfall::terminal_velocity::{
     BeardAir, FallLaw, GUNN_KINZER, SpeedTable, StandardAtmosphere, air_density_kg_m3, air_viscosity_pa_s, fits,
@@ -394,8 +396,8 @@ fn factors_follow_beard_within_their_bounds() {
             from_foot.relative(factor, rise, 1e-9, || format!("{d} mm, {height} m"));
         }
     }
-    simple.assert_below(0.0165, 900);
-    from_foot.assert_below(0.0122, 900);
+    simple.assert_below(0.016, 900);
+    from_foot.assert_below(0.012, 900);
     // Without viscosity small drops in cold air come out 3 % slow.
     let cold = air(101_325.0, 0.0);
     let truth = cold.terminal_velocity(0.3) / sea.terminal_velocity(0.3);
@@ -449,7 +451,7 @@ fn air_is_that_of_the_formulas() {
             }
         }
     }
-    worst.assert_below(1e-14, 1500);
+    worst.assert_below(1e-15, 1500);
     assert!((air_density_kg_m3(101_325.0, 20.0, 0.0) - 1.2041).abs() < 5e-5);
     assert!((air_viscosity_pa_s(20.0) - 1.816e-5).abs() < 5e-9);
     assert!((water_surface_tension_n_m(20.0) - 0.0730).abs() < 5e-5);

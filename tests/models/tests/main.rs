@@ -6,6 +6,7 @@ mod basins;
 mod canopy;
 mod check;
 mod drop;
+mod drop_field;
 mod fall;
 mod fall_speed;
 mod hash;

@@ -157,3 +157,67 @@ pub fn drip_fall(time: f64, terminal: f64, gravity: f64) -> [f64; 2] {
         [y[1], gravity * (1.0 - (y[1] / terminal).powi(2))]
     })
 }
+
+/// Volume of a drop of `diameter` mm, m³: a stack of discs.
+pub fn drop_volume(diameter: f64) -> f64 {
+    let r = diameter / 2000.0;
+    simpson(-r, r, 1, |z| std::f64::consts::PI * (r - z) * (r + z))
+}
+
+/// Which of the measured distances 0.4, 1, 1.5 and 2 m is nearest to a place, scaled to a crown of 2 m.
+pub fn nearest_ring(radius: f64, crown: f64) -> usize {
+    let at = 2.0 * radius / crown;
+    let rings = [0.4, 1.0, 1.5, 2.0];
+    let mut best = 0;
+    for ring in 1..4 {
+        if (at - rings[ring]).abs() < (at - rings[best]).abs() {
+            best = ring;
+        }
+    }
+    best
+}
+
+/// Shares of the drip by distance, between the rows of table 2 in hundredths.
+pub fn ring_shares(thickness: f64) -> [f64; 4] {
+    let mut rows = RADIAL_HUNDREDTHS;
+    rows.reverse();
+    let pair = rows
+        .windows(2)
+        .find(|pair| thickness <= pair[1].0)
+        .expect("within the rows");
+    let t = (thickness - pair[0].0) / (pair[1].0 - pair[0].0);
+    [0, 1, 2, 3].map(|n| (f64::from(pair[0].1[n]) * (1.0 - t) + f64::from(pair[1].1[n]) * t) / 100.0)
+}
+
+/// Time to fall: cosh(g t/v) = e^(g d/v²), by 2 sinh²(x/2) = cosh x − 1.
+pub fn drip_time(distance: f64, terminal: f64) -> f64 {
+    let x = 9.80665 * distance / (terminal * terminal);
+    let turned = if x < 700.0 {
+        2.0 * (0.5 * x.exp_m1()).sqrt().asinh()
+    } else {
+        x + std::f64::consts::LN_2
+    };
+    terminal / 9.80665 * turned
+}
+
+/// Way fallen: ln cosh y = ½ ln(1 + sinh² y).
+pub fn drip_way(time: f64, terminal: f64) -> f64 {
+    let y = 9.80665 * time / terminal;
+    let turned = if y < 300.0 {
+        0.5 * y.sinh().powi(2).ln_1p()
+    } else {
+        y - std::f64::consts::LN_2
+    };
+    terminal * terminal / 9.80665 * turned
+}
+
+/// The drop, by index from the newest, that is nearest in time to a point: all that are near are tried.
+pub fn nearest_drop(distance: f64, period: f64, phase: f64, terminal: f64) -> (u64, f64) {
+    let time = drip_time(distance, terminal);
+    let about = (time / period) as i64;
+    (about - 3..about + 4)
+        .filter(|&index| index >= 0)
+        .map(|index| (index as u64, (index as f64 + phase) * period))
+        .min_by(|a, b| (a.1 - time).abs().total_cmp(&(b.1 - time).abs()))
+        .expect("one is there")
+}

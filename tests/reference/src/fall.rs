@@ -99,6 +99,57 @@ pub fn gust_amplitude(terminal: f64, frequency: f64) -> f64 {
     (sine * sine + cosine * cosine).sqrt() * 2.0 / f64::from(steps)
 }
 
+/// c of the drag law, from its values at 0, 4 and 8 mm.
+pub fn stiffness(d: f64) -> f64 {
+    // The parabola's top is at 8.564 mm.
+    let d = d.clamp(0.0, 8.564);
+    let [at_0, at_4, at_8] = [0.397, 1.0534, 1.3098];
+    let parabola = at_0 * (d - 4.0) * (d - 8.0) / 32.0 - at_4 * d * (d - 8.0) / 16.0 + at_8 * d * (d - 4.0) / 32.0;
+    parabola.clamp(0.3, 1.25)
+}
+
+/// Angle of the diagonal of a rectangle, by half of it.
+pub fn slant(wind: f64, fall: f64) -> f64 {
+    2.0 * (wind / (wind.hypot(fall) + fall)).atan()
+}
+
+/// A number as an integer over a power of two: (integer, power).
+///
+/// # Panics
+/// For numbers below 2⁻⁹⁰ in magnitude (0 aside) and from 2⁵³ on.
+pub fn binary(x: f64) -> (i128, u32) {
+    let bits = x.to_bits();
+    let power = 1075 - ((bits >> 52) & 0x7FF) as i32;
+    assert!(x == 0.0 || (0..=142).contains(&power), "{x}");
+    let digits = i128::from(bits & 0xF_FFFF_FFFF_FFFF) + (1 << 52);
+    let signed = if x < 0.0 { -digits } else { digits };
+    // Without the zeros at the end.
+    let spare = if x == 0.0 {
+        0
+    } else {
+        digits.trailing_zeros().min(power as u32)
+    };
+    if x == 0.0 {
+        (0, 0)
+    } else {
+        (signed >> spare, power as u32 - spare)
+    }
+}
+
+/// Share and whole number of start + rate · time, in integers.
+pub fn exact_turns(start: f64, rate: f64, time: f64) -> (f64, i128) {
+    let [(s, s_bits), (r, r_bits), (t, t_bits)] = [start, rate, time].map(binary);
+    let bits = s_bits.max(r_bits + t_bits);
+    let product = (r * t).checked_mul(1 << (bits - r_bits - t_bits)).expect("fits");
+    parts(product + (s << (bits - s_bits)), 1 << bits)
+}
+
+/// Share and whole number of numerator/denominator, in integers.
+pub fn parts(numerator: i128, denominator: i128) -> (f64, i128) {
+    let rest = numerator.rem_euclid(denominator);
+    (rest as f64 / denominator as f64, numerator.div_euclid(denominator))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,6 +9,7 @@ pub mod canopy;
 pub mod drop;
 pub mod fall;
 pub mod fall_speed;
+pub mod field;
 pub mod hash;
 pub mod height_field;
 pub mod light;

@@ -2,6 +2,7 @@
 //! models, links, and marks of unfinished work. Nothing here needs a graphics device or the network once the workspace
 //! has been built.
 
+mod bounds;
 mod docs;
 mod graph;
 mod licences;

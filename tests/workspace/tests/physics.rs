@@ -13,7 +13,7 @@ const TABLE: &str = "docs/physics.md";
 const HEAD: &str = "| Quantity | Equation (units, domain) | Function | Test | Source | Known error |";
 
 /// Folders of `rain_core` whose public functions are models.
-const MODELS: [&str; 8] = [
+pub const MODELS: [&str; 8] = [
     "canopy", "haze", "optics", "rainfall", "splash", "surface", "waves", "wheels",
 ];
 
@@ -69,7 +69,7 @@ fn rows(text: &str) -> Vec<Row> {
 }
 
 /// The identifier that starts `text`.
-fn identifier(text: &str) -> &str {
+pub fn identifier(text: &str) -> &str {
     let end = text.find(|letter: char| !(letter.is_alphanumeric() || letter == '_'));
     &text[..end.unwrap_or(text.len())]
 }

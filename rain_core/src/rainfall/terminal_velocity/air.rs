@@ -45,7 +45,7 @@ pub fn air_viscosity_pa_s(temperature_c: f64) -> f64 {
 /// `temperature_c` in °C, held in [−30, 100]: supercooled drops are included, the ratio is singular near −59 °C. NaN
 /// counts as 20. Source: Kell 1975.
 ///
-/// Error: 1e-14 against the formula; 1e-5 against nature from 0 to 100 °C, 1e-3 at −30 °C.
+/// Error: 1e-15 against the formula; 1e-5 against nature from 0 to 100 °C, 1e-3 at −30 °C.
 #[must_use]
 pub fn water_density_kg_m3(temperature_c: f64) -> f64 {
     const ABOVE: [f64; 6] = [
@@ -84,7 +84,7 @@ impl StandardAtmosphere {
     ///
     /// `height_m` in m, held in [−500, 11 000]; NaN counts as 0. Source: ISO 2533:1975.
     ///
-    /// Error: 1e-14 against the formula; weather moves pressure by 5 % and temperature by tens of degrees.
+    /// Error: 2e-15 against the formula; weather moves pressure by 5 % and temperature by tens of degrees.
     #[must_use]
     pub fn at(height_m: f64) -> Self {
         let h = held(height_m, -500.0, 11_000.0, 0.0);

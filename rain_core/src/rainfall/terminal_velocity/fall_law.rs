@@ -82,6 +82,8 @@ impl FallLaw {
     /// Terminal speed at 20 °C and 101 325 Pa. Units: m/s.
     ///
     /// `diameter_mm` in mm, with the clamps of each law; a negative or NaN diameter returns 0.
+    ///
+    /// Error: that of the function it names, the same bits.
     #[must_use]
     pub fn sea_level_speed_m_s(self, diameter_mm: f64) -> f64 {
         match self {

@@ -85,9 +85,9 @@ pub fn terminal_velocity_f32(diameter_mm: f32) -> f32 {
 /// `diameter_mm` in mm, domain [0, 7], held there; `air_density` in kg/m³, domain [0.3, 2], held there; NaN counts as 0
 /// and as the standard density. Source: Beard 1985.
 ///
-/// Error against Beard 1976 for D ≥ 1 mm in the standard atmosphere up to 600 hPa: ≤ 1.2 % relative to its foot at 15
-/// °C, ≤ 1.6 % relative to 20 °C. It has no viscosity: −3 % at 0 °C and 0.3 mm. [`BeardAir::velocity_factor`] is
-/// better.
+/// Error: 1e-15 relative against the formula. Against Beard 1976 for D ≥ 1 mm in the standard atmosphere up to 600 hPa:
+/// ≤ 1.2 % relative to its foot at 15 °C, ≤ 1.6 % relative to 20 °C. It has no viscosity: −3 % at 0 °C and 0.3 mm.
+/// [`BeardAir::velocity_factor`] is better.
 #[must_use]
 pub fn density_factor(diameter_mm: f64, air_density: f64) -> f64 {
     let d = air::held(diameter_mm, 0.0, MAX_BEARD_DIAMETER_MM, 0.0);

@@ -78,7 +78,7 @@ fn reflectance_is_fresnels_by_angles() {
     }
     from_outside.assert_below(1e-12, 18_000);
     from_inside.assert_below(1e-12, 6_000);
-    cheap.assert_below(1e-14, 6_000);
+    cheap.assert_below(1e-15, 6_000);
 
     let [s, p] = reference::fresnel(1.0, 1.0, N);
     assert!(

@@ -1,6 +1,7 @@
 //! Fresnel reflection, refraction in a drop, streaks, extinction.
 
 mod drop;
+mod formulas;
 mod fresnel;
 mod haze;
 mod sharing;

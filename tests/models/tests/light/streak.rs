@@ -256,3 +256,145 @@ fn gains_lenses_and_lamps() {
     assert!((lamp_falloff_per_m2(20.0, 0.1) / lamp_falloff_per_m2(10.0, 0.1) - 0.25).abs() < 1e-4);
     assert!((lamp_falloff_per_m2(0.0, 0.1) - 100.0).abs() < 1e-9);
 }
+
+#[test]
+fn paths_peaks_lenses_and_lamps_are_their_formulas() {
+    let (mut length, mut peak, mut blur, mut lamp, mut near) = (
+        Worst::default(),
+        Worst::default(),
+        Worst::default(),
+        Worst::default(),
+        Worst::default(),
+    );
+    for i in -40..=40 {
+        let x = 10_f64.powf(0.1 * f64::from(i));
+        for y in [1e-4, 0.013, 1.0, 77.0] {
+            let place = || format!("{x} {y}");
+            assert_eq!(streak_path_m(x, y), x * y);
+            length.relative(streak_length_m(x, y, 3.0), x * y + 0.003, 1e-30, place);
+            peak.relative(streak_peak_opacity(x, y), f64::min(x / (1000.0 * y), 1.0), 1e-30, place);
+            let expected = 5e-3 * 900.0 * (y - x).abs() / (x * y);
+            let larger = 4.5 / f64::min(x, y);
+            if expected < 1e6 {
+                blur.absolute(
+                    circle_of_confusion_px(5e-3, 900.0, x, y) / larger,
+                    expected / larger,
+                    place,
+                );
+            }
+            if y >= 1e-3 {
+                lamp.relative(lamp_falloff_per_m2(x, y), x.hypot(y).powi(-2), 1e-30, place);
+            }
+            if x > 10.0 * f64::max(y, 1e-3) {
+                // A sphere that shines evenly acts as a point.
+                near.relative(lamp_falloff_per_m2(x, f64::max(y, 1e-3)), x.powi(-2), 1e-30, place);
+            }
+        }
+    }
+    length.assert_below(1e-15, 300);
+    peak.assert_below(1e-15, 300);
+    blur.assert_below(1e-15, 300);
+    lamp.assert_below(1e-15, 200);
+    near.assert_below(0.01, 50);
+    assert_eq!(circle_of_confusion_px(1.0, 1e6, 1e-9, 1.0), 1e6);
+}
+
+#[test]
+fn opacity_is_an_overlap_of_two_intervals() {
+    let (mut worst, mut bent) = (Worst::default(), Worst::default());
+    for path in [1e-3, 0.3, 1.0, 2.5, 20.0, 1e4] {
+        for i in -44..=44 {
+            // Beside the axis by the angle at the disc's middle, off the rim.
+            let angle = f64::from(i) * 0.035;
+            let (across, chord) = (0.5 * angle.sin(), 0.5 * angle.cos());
+            for j in -4..=44 {
+                let along = path * f64::from(j) / 40.0;
+                let expected = reference::overlap(along, chord, path);
+                let place = || format!("path {path} at {across} {along}");
+                // The two ends are as far from each other as the path, or the disc, is long.
+                let scale = 1.0 + 1.0 / path;
+                worst.absolute(
+                    streak_opacity(across, along, 1.0, path) / scale,
+                    expected / scale,
+                    place,
+                );
+                bent.absolute(
+                    streak_opacity(across, along, 1.05, path) / scale,
+                    expected / scale,
+                    place,
+                );
+            }
+        }
+    }
+    worst.assert_below(1e-15, 25_000);
+    assert!(bent.error > 0.01);
+}
+
+#[test]
+fn gains_are_layers_over_layers() {
+    let (mut worst, mut bent) = (Worst::default(), Worst::default());
+    for i in -160..=0 {
+        let alpha = 10_f64.powf(0.1 * f64::from(i)).min(1.0 - 1e-9);
+        for halves in [0, 1, 2, 3, 4, 12, 63, 64] {
+            let expected = reference::layered(alpha, halves);
+            let found = contrast_gain(alpha, 0.5 * f64::from(halves));
+            worst.relative(found, expected, 1e-300, || format!("{alpha}, {halves} halves"));
+            bent.relative(
+                contrast_gain(1.05 * alpha, 0.5 * f64::from(halves)),
+                expected,
+                1e-300,
+                String::new,
+            );
+        }
+    }
+    worst.assert_below(2e-15, 1200);
+    assert!(bent.error > 0.04);
+}
+
+#[test]
+fn streaks_are_cut_where_their_way_meets_the_near_plane() {
+    let (mut sum, mut cut, mut blurred, mut bent) =
+        (Worst::default(), Worst::default(), Worst::default(), Worst::default());
+    for (start, end) in [
+        (5.0, 2.0),
+        (2.0, -1.0),
+        (-3.0, 0.9),
+        (0.6, 0.15),
+        (0.05, 30.0),
+        (20.0, 0.11),
+        (1.0, 0.0999),
+    ] {
+        for near in [0.1_f32, 0.05] {
+            let (tail, head) = (Vec3::new(0.1, 0.3, -start as f32), Vec3::new(-0.4, 0.2, -end as f32));
+            let place = || format!("{start} to {end} m, near plane at {near} m");
+            let streak = ScreenStreak::project(head, tail, 2e-3, 600.0, near).expect("in view");
+            let exact = reference::disc_integral_px2(
+                f64::from(2e-3_f32),
+                600.0,
+                -f64::from(tail.z),
+                -f64::from(head.z),
+                f64::from(near),
+            );
+            sum.relative(f64::from(streak.sum_px2()), exact, 1e-30, place);
+            blurred.relative(f64::from(streak.blurred(7.0).sum_px2()), exact, 1e-30, place);
+            bent.relative(f64::from(streak.sum_px2()), 1.05 * exact, 1e-30, place);
+            // The same cut in double precision.
+            let (h, t) = (head.as_dvec3(), tail.as_dvec3());
+            let way = h - t;
+            let at = |share: f64| t + way * share;
+            let border = (t.z + f64::from(near)) / (t.z - h.z);
+            let (from, to) = (
+                if -t.z >= f64::from(near) { 0.0 } else { border },
+                if -h.z >= f64::from(near) { 1.0 } else { border },
+            );
+            let (a, b, share) = clip_to_near(head, tail, near).expect("in view");
+            cut.absolute((a.as_dvec3() - at(to)).length() / way.length(), 0.0, place);
+            cut.absolute((b.as_dvec3() - at(from)).length() / way.length(), 0.0, place);
+            cut.absolute(f64::from(share), to - from, place);
+        }
+    }
+    sum.assert_below(3e-6, 14);
+    blurred.assert_below(3e-6, 14);
+    cut.assert_below(2e-7, 40);
+    assert!(bent.error > 0.04);
+}

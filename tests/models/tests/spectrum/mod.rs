@@ -2,6 +2,7 @@
 
 mod bulk;
 mod classes;
+mod formulas;
 mod laws;
 mod sampling;
 

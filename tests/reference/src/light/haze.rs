@@ -61,3 +61,40 @@ pub fn profile_depth(base: f64, base_height: f64, scale: f64, from: f64, to: f64
         way * simpson(0.0, 1.0, 2000, density)
     }
 }
+
+/// 1 − e^(−τ) by the hyperbolic tangent.
+pub fn lost(depth: f64) -> f64 {
+    let t = (0.5 * depth).tanh();
+    2.0 * t / (1.0 + t)
+}
+
+/// ∫₀¹ e^(−xs) ds, in pieces short against the decay.
+pub fn mean_decay(x: f64) -> f64 {
+    let pieces = 1 + x.min(60.0) as usize;
+    let end = (60.0 / x).min(1.0);
+    (0..pieces)
+        .map(|i| {
+            simpson(
+                end * i as f64 / pieces as f64,
+                end * (i + 1) as f64 / pieces as f64,
+                600,
+                |s| (-x * s).exp(),
+            )
+        })
+        .sum()
+}
+
+/// Fog amount by relative intensity: what the slope of each piece adds up to.
+pub fn table_fog(x: f64) -> f64 {
+    let part = |from: f64, to: f64| x.clamp(from, to) - from;
+    0.15 / 0.33 * part(0.0, 0.33) + 0.25 / 0.33 * part(0.33, 0.66) + 0.6 / 0.34 * part(0.66, 1.0)
+}
+
+/// Mean weight of the middle tier over a card of depth `a` about `r`.
+pub fn card(r: f64, a: f64, z: f64) -> f64 {
+    let b = (0.8 * z).clamp(3.2, 24.0);
+    let weight = |s: f64| smooth(s, b, 1.5 * b) - smooth(s, 24.0, 36.0);
+    let corners = [b, 1.5 * b, 24.0, 36.0];
+    let until = |s: f64| if s > 0.0 { along(s, &corners, weight) } else { 0.0 };
+    (until(r + 0.5 * a) - until(r - 0.5 * a)) / a
+}

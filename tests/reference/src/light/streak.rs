@@ -39,3 +39,35 @@ pub fn disc_sum_px2(diameter: f64, focal: f64, start: f64, end: f64, near: f64) 
         .map(|z| core::f64::consts::FRAC_PI_4 * (diameter * focal / z).powi(2) / f64::from(n))
         .sum()
 }
+
+/// Share of [0, path] that lies within half a chord of `along`: by the distance of both middles.
+pub fn overlap(along: f64, chord: f64, path: f64) -> f64 {
+    let reach = chord + 0.5 * path - (along - 0.5 * path).abs();
+    reach.clamp(0.0, f64::min(2.0 * chord, path)) / path
+}
+
+/// 1 − (1 − α)^g for g a multiple of a half: layer over layer.
+pub fn layered(alpha: f64, halves: u32) -> f64 {
+    let over = |below: f64, layer: f64| below + layer * (1.0 - below);
+    let whole = (0..halves / 2).fold(0.0, |sum, _| over(sum, alpha));
+    if halves % 2 == 1 {
+        over(whole, alpha / (1.0 + (1.0 - alpha).sqrt()))
+    } else {
+        whole
+    }
+}
+
+/// ∫(π/4)(D f/z)² over the share of the exposure behind the near plane, as [`disc_sum_px2`], cut exactly.
+pub fn disc_integral_px2(diameter: f64, focal: f64, start: f64, end: f64, near: f64) -> f64 {
+    let at = |z: f64| ((z - start) / (end - start)).clamp(0.0, 1.0);
+    let (from, to) = if start < near {
+        (at(near), 1.0)
+    } else if end < near {
+        (0.0, at(near))
+    } else {
+        (0.0, 1.0)
+    };
+    crate::numerics::simpson(from, to, 20_000, |t| {
+        core::f64::consts::FRAC_PI_4 * (diameter * focal / (start + (end - start) * t)).powi(2)
+    })
+}
