@@ -164,7 +164,7 @@ struct WaveParams {
     first_source: u32,
     first_bin: u32,
     // (c dt/dx)² of the fastest wave.
-    courant2: f32,
+    courant_squared: f32,
     // Share of u - u⁻ that damping leaves in a step.
     g: f32,
     // Share of the height that is left after a step, and 1 over it.

@@ -46,8 +46,8 @@ fn rain_wave_face(a: f32, b: f32) -> f32 {
 // The next height of a cell from the two before and the sum over its faces. `keep` shrinks all heights alike, so that
 // u = keepⁿ times the water that does not shrink; with 1 it is the step of WaveField. Tiny heights become 0, for a
 // quiet pond must not run into denormal numbers.
-fn rain_wave_next(u: f32, before: f32, sum: f32, g: f32, courant2: f32, keep: f32) -> f32 {
-    let next = keep * (u + (g * (u - keep * before) + (0.5 + 0.5 * g) * courant2 * sum));
+fn rain_wave_next(u: f32, before: f32, sum: f32, g: f32, courant_squared: f32, keep: f32) -> f32 {
+    let next = keep * (u + (g * (u - keep * before) + (0.5 + 0.5 * g) * courant_squared * sum));
     return select(next, 0.0, abs(next) < 1e-20);
 }
 

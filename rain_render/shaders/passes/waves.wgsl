@@ -147,7 +147,7 @@ fn step_levels(@builtin(global_invocation_id) id: vec3<u32>) {
         g *= rain_wave_rim(distance.x, params.rim, params.rim_damping)
             * rain_wave_rim(distance.y, params.rim, params.rim_damping);
     }
-    before[at] = rain_wave_next(u, before[at], along + across, g, params.courant2, params.keep);
+    before[at] = rain_wave_next(u, before[at], along + across, g, params.courant_squared, params.keep);
 }
 
 // Height as it is shown, and whether there is water (1) in a cell next to `cell`.

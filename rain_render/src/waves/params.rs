@@ -244,7 +244,7 @@ impl Rules {
             moved: [0; 2],
             first_source: 0,
             first_bin: 0,
-            courant2: (self.courant * self.courant) as f32,
+            courant_squared: (self.courant * self.courant) as f32,
             g: ((1.0 - self.half_damping) / (1.0 + self.half_damping)) as f32,
             keep: self.keep as f32,
             inverse_keep: (1.0 / self.keep) as f32,
