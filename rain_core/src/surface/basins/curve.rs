@@ -1,5 +1,10 @@
 //! Volume and level of a basin: exact, piecewise linear between the heights of its cells.
 
+use crate::error::clamped;
+
+/// Largest volume and depth that are looked at. Units: m³, m.
+const MOST: f64 = 1e30;
+
 /// Volume against level of one basin. Depths are above the basin's lowest cell, so that nothing cancels.
 ///
 /// Error: below 1e-12 of the volume against a sum over all cells; level(volume(s)) returns s to 1e-12 of the depth.
@@ -73,16 +78,19 @@ impl Curve<'_> {
     }
 
     /// Depth of water above the lowest cell. Units: m. Volumes (m³) below that of the basins inside give the sill,
-    /// above the capacity the spill level; NaN counts as none.
+    /// above the capacity the spill level; NaN counts as none. Where it cannot overflow, volumes above 1e30 m³ count as
+    /// that.
     #[must_use]
     pub fn depth_m(&self, volume_m3: f64) -> f64 {
+        let volume_m3 = clamped(volume_m3, 0.0, MOST);
         self.depth_in(self.stretch_at(volume_m3), volume_m3)
     }
 
     /// Water at a depth above the lowest cell. Units: m³. Depths (m) outside the sill and spill level count as these,
-    /// NaN as the sill.
+    /// NaN as the sill. Where it cannot overflow, depths above 1e30 m count as that.
     #[must_use]
     pub fn volume_m3(&self, depth_m: f64) -> f64 {
+        let depth_m = clamped(depth_m, 0.0, MOST);
         if depth_m >= self.spill_depth {
             return self.capacity;
         }

@@ -259,19 +259,33 @@ impl BasinRun {
     /// When there is no such basin.
     #[must_use]
     pub fn volume_m3(&self, basin: u32) -> f64 {
+        let basins = self.basins.basins();
         let mut total = 0.0;
-        let mut open = vec![basin];
-        while let Some(basin) = open.pop() {
-            let at = &self.basins.basins()[basin as usize];
-            match at.children {
-                Some(children) if !self.state.united[basin as usize] => open.extend(children),
-                _ if self.state.is_pool(&self.basins, basin) => {
-                    total += self.state.volumes[basin as usize].total().max(0.0);
+        let mut at = basin;
+        loop {
+            // Down to one body of water, by first children.
+            while let (Some([first, _]), false) = (basins[at as usize].children, self.state.united[at as usize]) {
+                at = first;
+            }
+            total += if self.state.is_pool(&self.basins, at) {
+                self.state.volumes[at as usize].total().max(0.0)
+            } else {
+                basins[at as usize].volume_m3.unwrap_or(0.0)
+            };
+            // Up to where a second child is left.
+            loop {
+                let parent = basins[at as usize].parent.filter(|_| at != basin);
+                let Some((parent, [first, second])) = parent.and_then(|p| Some((p, basins[p as usize].children?)))
+                else {
+                    return total;
+                };
+                if at == first {
+                    at = second;
+                    break;
                 }
-                _ => total += at.volume_m3.unwrap_or(0.0),
+                at = parent;
             }
         }
-        total
     }
 
     /// Level of the water in a basin, its bottom when dry; none where it is several pools. Units: m.

@@ -50,10 +50,17 @@ proptest! {
                 let volume = run.volume_m3(basin as u32);
                 let most = at.volume_m3.unwrap_or(f64::INFINITY);
                 prop_assert!(volume >= 0.0 && volume <= most * (1.0 + 1e-9) + 1e-12, "turn {turn} basin {basin}: {volume} of {most}");
+                if let Some(children) = at.children && run.level_m(basin as u32).is_none() {
+                    let parts: f64 = children.iter().map(|&child| run.volume_m3(child)).sum();
+                    prop_assert!((volume - parts).abs() <= 1e-12 * parts, "turn {turn} basin {basin}: {volume} of {parts}");
+                }
                 if let Some(level) = run.level_m(basin as u32) {
                     prop_assert!(level.is_finite() && level >= at.bottom_m);
                 }
             }
+            let tops = (0..baked.basins().len() as u32).filter(|&basin| baked.basins()[basin as usize].parent.is_none());
+            let stored: f64 = tops.map(|top| run.volume_m3(top)).sum();
+            prop_assert!((stored - ledger.stored_m3).abs() <= 1e-9 * stored.max(1e-6), "turn {turn}: {stored} of {ledger:?}");
             let again = BasinRun::restore(Arc::clone(&baked), run.state().clone()).unwrap();
             prop_assert_eq!(again.ledger(), ledger);
         }
@@ -189,7 +196,28 @@ fn curves_clamp_and_hold_no_nan() {
 }
 
 #[test]
-fn steps_allocate_nothing() {
+fn curves_without_a_brim_end_at_a_depth_that_is_a_number() {
+    for rows in [["999", "919", "999"], ["393", "313", "333"]] {
+        let baked = bake(&rain_reference::basins::Field {
+            closed: true,
+            ..drawn(&rows)
+        });
+        let top = baked.basins().len() as u32 - 1;
+        let curve = baked.curve(top);
+        assert_eq!(curve.capacity_m3(), f64::INFINITY);
+        let mut before = (0.0, 0.0);
+        for x in [f64::NAN, -1.0, 0.0, 1.0, 1e6, 1e30, 1e300, f64::INFINITY] {
+            let now = (curve.depth_m(x), curve.volume_m3(x));
+            assert!(now.0.is_finite() && now.1.is_finite(), "{x}: {now:?}");
+            assert!(now.0 >= before.0 && now.1 >= before.1, "{x}: {now:?} after {before:?}");
+            before = now;
+        }
+        assert_eq!(before, (curve.depth_m(1e30), curve.volume_m3(1e30)));
+    }
+}
+
+#[test]
+fn steps_and_questions_allocate_nothing() {
     let field = rain_reference::basins::Field {
         nx: 64,
         nz: 64,
@@ -206,12 +234,19 @@ fn steps_allocate_nothing() {
         evaporation_m_s: 1e-5,
         ..BasinForcing::default()
     };
+    let basins = run.basins().basins().len() as u32;
+    let exposure = vec![0.9; basins as usize];
     let info = allocation_counter::measure(|| {
         for turn in 0..200 {
             let forcing = if turn % 50 < 30 { &rain } else { &dry };
             run.advance(forcing, 20.0).unwrap();
             run.add_water(turn * 7, 0.01).unwrap();
             run.remove_water(turn * 11, 0.02).unwrap();
+            run.set_exposure(&exposure).unwrap();
+            for basin in 0..basins {
+                std::hint::black_box((run.volume_m3(basin), run.level_m(basin)));
+            }
+            std::hint::black_box((run.depth_at(turn * 5, 0.1), run.ledger(), run.is_settled()));
         }
     });
     assert_eq!(info.count_total, 0);
