@@ -7,10 +7,16 @@ use thiserror::Error;
 use super::conditions::WeatherConditions;
 use super::timeline::{Keyframe, Timeline, Transition};
 use crate::error::ConfigError;
-use crate::table_lines::TableLines;
+use crate::table_lines::{LineLimits, TableLines};
 
 /// Most data rows a table may have (11.5 days of one row a second).
 pub const MAX_HYETOGRAPH_ROWS: usize = 1_000_000;
+
+/// Most bytes and fields of a line. Far more than there are columns: what is wrong in a line is to be told.
+const LINE_LIMITS: LineLimits = LineLimits {
+    bytes: 1 << 16,
+    fields: 1 << 12,
+};
 
 const COLUMNS: [&str; 6] = [
     "time_s",
@@ -73,6 +79,9 @@ pub enum HyetographProblem {
     /// More rows than [`MAX_HYETOGRAPH_ROWS`].
     #[error("the table has more than {0} rows")]
     TooManyRows(usize),
+    /// A line with more than 65536 bytes or 4096 fields.
+    #[error("the line is longer than {} bytes or {} fields", LINE_LIMITS.bytes, LINE_LIMITS.fields)]
+    LineTooLong,
     /// The text is not UTF-8, or could not be read.
     #[error("cannot read the table: {0}")]
     Unreadable(csv::Error),
@@ -97,7 +106,7 @@ fn read_table(reader: impl Read, base: &WeatherConditions, max_rows: usize) -> R
         .flexible(true)
         .quoting(false)
         .has_headers(false)
-        .from_reader(TableLines::new(reader));
+        .from_reader(TableLines::new(reader, LINE_LIMITS));
     let mut record = csv::StringRecord::new();
 
     if !next_record(&mut csv, &mut record)? {
@@ -158,6 +167,9 @@ fn next_record<R: Read>(
 ) -> Result<bool, HyetographError> {
     csv.read_record(record).map_err(|error| {
         let line = csv.get_ref().next_record();
+        if csv.get_ref().too_long().is_some() {
+            return at(line, 1, HyetographProblem::LineTooLong);
+        }
         let column = match error.kind() {
             csv::ErrorKind::Utf8 { err, .. } => err.field() + 1,
             _ => 1,
@@ -302,6 +314,18 @@ mod tests {
         let error = read_hyetograph(&b"time_s,intensity_mm_h\n0,\xff\n"[..], &WeatherConditions::default());
         let error = error.expect_err("not UTF-8");
         assert_eq!((error.line, error.column), (2, 2));
+    }
+
+    #[test]
+    fn the_length_of_a_line_is_bounded() {
+        for byte in [b',', b'7'] {
+            let text = b"time_s,intensity_mm_h\n0,1\n".chain(std::io::repeat(byte));
+            let error = read_hyetograph(text, &WeatherConditions::default());
+            assert_eq!(
+                error.expect_err("too long").to_string(),
+                "line 3, column 1: the line is longer than 65536 bytes or 4096 fields"
+            );
+        }
     }
 
     #[test]

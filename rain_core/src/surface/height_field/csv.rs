@@ -5,7 +5,7 @@ use std::io::Read;
 use thiserror::Error;
 
 use crate::error::shown;
-use crate::table_lines::TableLines;
+use crate::table_lines::{LineLimits, TableLines, TooLong};
 
 use super::{GridFrame, HeightField, HeightFieldError, ImportLimits, MAX_COORDINATE_M, MAX_SIDE_CELLS};
 
@@ -35,6 +35,12 @@ pub enum CsvProblem {
         /// The limit.
         allowed: usize,
     },
+    /// A line that goes on after the bytes allowed.
+    #[error("the line is longer than {allowed} bytes")]
+    LineTooLong {
+        /// The limit.
+        allowed: usize,
+    },
     /// The file goes on after the bytes allowed.
     #[error("the table is longer than {allowed} bytes")]
     TooLong {
@@ -46,25 +52,35 @@ pub enum CsvProblem {
     Unreadable(csv::Error),
 }
 
+/// Longest line: 256 bytes for each of the cells that a side may have.
+const MAX_LINE_BYTES: usize = 256 * MAX_SIDE_CELLS;
+
 impl HeightField {
     /// Reads one row of heights (units: m) per line, separated by commas: row = z, column = x. `NaN` (any case) or
     /// nothing between two commas is a hole. The first cell's corner is the origin.
     ///
     /// A byte-order mark, CR LF line ends, spaces around fields, empty lines and lines that start with `#` are
-    /// tolerated; there is no quoting and no header.
+    /// tolerated; there is no quoting and no header. A line may have 16 MiB.
+    ///
+    /// Allocates the heights and one line.
     ///
     /// # Errors
     /// The first thing wrong, with its line and column; more than `limits` allow; `cell_m` outside [1e-4, 1e4].
     pub fn from_csv(reader: impl Read, cell_m: f64, limits: &ImportLimits) -> Result<Self, HeightFieldError> {
         // One byte more than allowed tells a table that ends from one that goes on.
         let bytes = reader.take((limits.bytes as u64).saturating_add(1));
+        let line_limits = LineLimits {
+            bytes: MAX_LINE_BYTES,
+            // A row may be of another length than the first, and is then to be told so.
+            fields: MAX_SIDE_CELLS.min(limits.cells).saturating_add(1),
+        };
         let mut csv = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
             .flexible(true)
             .quoting(false)
             .has_headers(false)
-            .from_reader(TableLines::new(bytes));
+            .from_reader(TableLines::new(bytes, line_limits));
         let table = read_rows(&mut csv, limits);
         if csv.get_ref().inner().limit() == 0 {
             let allowed = limits.bytes;
@@ -88,8 +104,14 @@ fn read_rows(
             Ok(true) => {}
             Ok(false) => break,
             Err(error) => {
-                let line = csv.get_ref().next_record();
-                return Err(at(line, 1, CsvProblem::Unreadable(error)));
+                let problem = match csv.get_ref().too_long() {
+                    Some(TooLong::Fields) => CsvProblem::TooManyHeights { allowed: limits.cells },
+                    Some(TooLong::Bytes) => CsvProblem::LineTooLong {
+                        allowed: MAX_LINE_BYTES,
+                    },
+                    None => CsvProblem::Unreadable(error),
+                };
+                return Err(at(csv.get_ref().next_record(), 1, problem));
             }
         }
         let line = csv.get_ref().next_record();

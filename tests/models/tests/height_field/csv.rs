@@ -1,5 +1,7 @@
 //! Tables of heights.
 
+use std::io::Read;
+
 use proptest::prelude::*;
 use rain_core::surface::height_field::{HeightField, HeightFieldError, ImportLimits};
 
@@ -70,6 +72,55 @@ fn large_tables_are_refused_before_they_are_held() {
     };
     assert!(HeightField::from_csv(endless, 1.0, &limits).is_err());
     refused(HeightField::from_csv(&b"1"[..], f64::NAN, &LIMITS), &["cell_m is NaN"]);
+}
+
+#[test]
+fn a_line_without_end_is_not_held() {
+    let limits = ImportLimits::default();
+    for (piece, words) in [
+        (&b","[..], ["line 2", "more than 67108864 heights"]),
+        (b"0,", ["line 2", "more than 67108864 heights"]),
+        (b" ", ["line 2", "longer than 16777216 bytes"]),
+        (b"1", ["line 2", "longer than 16777216 bytes"]),
+    ] {
+        // What a gigabyte would be, of which the reader may take no more than it needs.
+        let mut text = b"0,1\n".chain(Endless { piece, read: 0 });
+        let used = allocation_counter::measure(|| {
+            refused(HeightField::from_csv(&mut text, 0.5, &limits), &words);
+        });
+        assert!(used.bytes_max < 70 << 20, "{words:?}: {} bytes", used.bytes_max);
+        let read = text.get_ref().1.read;
+        assert!(read < 17 << 20, "{words:?}: {read} bytes read");
+    }
+    // The longest row that is allowed.
+    let row = "0,".repeat(65_535) + "0\n";
+    let field = HeightField::from_csv(row.as_bytes(), 0.5, &limits).expect("a row");
+    assert_eq!(field.cells(), [65_536, 1]);
+    refused(
+        HeightField::from_csv(("0,".to_owned() + &row).as_bytes(), 0.5, &limits),
+        &["line 1", "65536 along a side"],
+    );
+    let row = format!("0,{}1\n", " ".repeat((1 << 24) - 3));
+    assert!(HeightField::from_csv(row.as_bytes(), 0.5, &limits).is_ok());
+    // Comments are not kept.
+    let text = format!("#{}\n0,1\n", ",".repeat(20 << 20));
+    assert!(HeightField::from_csv(text.as_bytes(), 0.5, &limits).is_ok());
+}
+
+/// The same bytes over and over.
+struct Endless {
+    piece: &'static [u8],
+    read: usize,
+}
+
+impl Read for Endless {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        for (index, byte) in buffer.iter_mut().enumerate() {
+            *byte = self.piece[(self.read + index) % self.piece.len()];
+        }
+        self.read += buffer.len();
+        Ok(buffer.len())
+    }
 }
 
 proptest! {
