@@ -1,6 +1,8 @@
 //! Numbers out of a glTF file's buffers, with every bound checked: a file may say anything.
 
-use glam::DVec3;
+use std::collections::BTreeMap;
+
+use glam::{DAffine3, DVec3};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::{Accessor, buffer};
 
@@ -68,8 +70,58 @@ fn number(bytes: &[u8], kind: DataType, normalised: bool) -> f64 {
     if normalised { (value / full).max(-1.0) } else { value }
 }
 
+/// Positions of vertices: never much larger than the bytes that they were read from.
+pub(super) enum Positions {
+    /// One for each vertex.
+    Dense(Vec<DVec3>),
+    /// A file may name any number of vertices and have data for a few: the others are all in one place.
+    Sparse {
+        count: usize,
+        others: DVec3,
+        changed: BTreeMap<usize, DVec3>,
+    },
+}
+
+impl Positions {
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Self::Dense(list) => list.len(),
+            Self::Sparse { count, .. } => *count,
+        }
+    }
+
+    /// The position of a vertex below the count.
+    pub(super) fn get(&self, index: usize) -> DVec3 {
+        match self {
+            Self::Dense(list) => list[index],
+            Self::Sparse { others, changed, .. } => changed.get(&index).copied().unwrap_or(*others),
+        }
+    }
+
+    pub(super) fn transform(&mut self, by: &DAffine3) {
+        let transform = |p: &mut DVec3| *p = by.transform_point3(*p);
+        match self {
+            Self::Dense(list) => list.iter_mut().for_each(transform),
+            Self::Sparse { others, changed, .. } => changed.values_mut().chain([others]).for_each(transform),
+        }
+    }
+
+    /// Puts a vertex elsewhere; whether there is one of this index.
+    fn set(&mut self, index: usize, to: DVec3) -> bool {
+        let there = index < self.len();
+        match self {
+            Self::Dense(list) if there => list[index] = to,
+            Self::Sparse { changed, .. } if there => {
+                changed.insert(index, to);
+            }
+            _ => {}
+        }
+        there
+    }
+}
+
 /// Positions of vertices, sparse changes applied. At most `limit`.
-pub(super) fn positions(buffers: &Buffers, accessor: &Accessor<'_>, limit: usize) -> Result<Vec<DVec3>, GltfProblem> {
+pub(super) fn positions(buffers: &Buffers, accessor: &Accessor<'_>, limit: usize) -> Result<Positions, GltfProblem> {
     let index = accessor.index();
     let (kind, count) = (accessor.data_type(), accessor.count());
     // Integers are KHR_mesh_quantization.
@@ -90,12 +142,16 @@ pub(super) fn positions(buffers: &Buffers, accessor: &Accessor<'_>, limit: usize
     let vector =
         |bytes: &[u8]| DVec3::from_array([0, 1, 2].map(|i| number(&bytes[i * step..], kind, accessor.normalized())));
     // The bytes are known to be there before anything is allocated; only a sparse accessor may lack them.
-    let mut list: Vec<DVec3> = match accessor.view() {
+    let mut list = match accessor.view() {
         Some(view) => {
             let elements = Elements::new(buffers, &view, accessor.offset(), size, count)?;
-            (0..count).map(|i| vector(elements.get(i))).collect()
+            Positions::Dense((0..count).map(|i| vector(elements.get(i))).collect())
         }
-        None => vec![DVec3::ZERO; count],
+        None => Positions::Sparse {
+            count,
+            others: DVec3::ZERO,
+            changed: BTreeMap::new(),
+        },
     };
     if let Some(sparse) = accessor.sparse() {
         let changes = sparse.count();
@@ -116,12 +172,13 @@ pub(super) fn positions(buffers: &Buffers, accessor: &Accessor<'_>, limit: usize
         let changed = Elements::new(buffers, &values.view(), values.offset(), size, changes)?;
         for i in 0..changes {
             let place = number(places.get(i), index_kind, false) as usize;
-            let vertex = list.get_mut(place).ok_or(GltfProblem::Index {
-                accessor: index,
-                index: place,
-                vertices: count,
-            })?;
-            *vertex = vector(changed.get(i));
+            if !list.set(place, vector(changed.get(i))) {
+                return Err(GltfProblem::Index {
+                    accessor: index,
+                    index: place,
+                    vertices: count,
+                });
+            }
         }
     }
     Ok(list)

@@ -399,12 +399,12 @@ fn for_each_triangle(
             continue;
         };
         let mut points = positions(buffers, &accessor, most)?;
-        points.iter_mut().for_each(|p| *p = world.transform_point3(*p));
+        points.transform(world);
         let order = match primitive.indices() {
             Some(accessor) => Some(indices(buffers, &accessor, points.len(), most)?),
             None => None,
         };
-        let corners = order.as_ref().map_or(points.len(), Vec::len);
+        let corners = order.as_ref().map_or_else(|| points.len(), Vec::len);
         let count = match mode {
             Mode::Triangles => corners / 3,
             _ => corners.saturating_sub(2),
@@ -415,7 +415,7 @@ fn for_each_triangle(
             return Err(HeightFieldError::TooManyTriangles { allowed });
         }
         let mirrored = world.matrix3.determinant() < 0.0;
-        let point = |i: usize| points[order.as_ref().map_or(i, |order| order[i])];
+        let point = |i: usize| points.get(order.as_ref().map_or(i, |order| order[i]));
         for i in 0..count {
             let [a, b, c] = match mode {
                 Mode::Triangles => [3 * i, 3 * i + 1, 3 * i + 2],

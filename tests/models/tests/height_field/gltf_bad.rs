@@ -156,6 +156,38 @@ fn counts_without_data_allocate_nothing() {
 }
 
 #[test]
+fn vertices_without_data_take_no_memory() {
+    let mut b = Builder::default();
+    let count = 3_usize << 18;
+    // One triangle somewhere in a long list; all the others are points at the origin.
+    let changes = [
+        (60_000, [0.0, 1.0, 0.0]),
+        (60_001, [0.0, 1.0, 2.0]),
+        (60_002, [2.0, 1.0, 0.0]),
+    ];
+    let positions = b.sparse_positions(count, &changes);
+    let mesh = b.mesh(positions, None, Mode::Triangles, None, "");
+    b.node(&format!(r#""mesh":{mesh},"translation":[5,1,0]"#), true);
+    let limits = ImportLimits {
+        triangles: count / 3,
+        ..LIMITS
+    };
+    let bytes = b.glb();
+    let mut import = None;
+    let used = allocation_counter::measure(|| import = HeightField::from_gltf(&bytes, None, 0.5, &limits).ok());
+    assert!(used.bytes_max < 1 << 18, "{} bytes", used.bytes_max);
+    let import = import.expect("a triangle faces up");
+    assert_eq!(import.field.height(0, 0), Some(2.0));
+    assert_eq!(import.field.frame().origin(), [5.0, 0.0]);
+    assert_eq!(import.left_out.not_up, count / 3 - 1);
+    let fewer = ImportLimits {
+        triangles: count / 3 - 1,
+        ..LIMITS
+    };
+    assert!(HeightField::from_gltf(&bytes, None, 0.5, &fewer).is_err());
+}
+
+#[test]
 fn many_copies_of_a_mesh_count_each_time() {
     let mut b = Builder::default();
     let positions = b.positions(&square([0.0, 1.0, 0.0]));
