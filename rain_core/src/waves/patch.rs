@@ -4,7 +4,7 @@ use super::border::Border;
 use super::field::WaveField;
 
 /// How far a Gaussian source reaches, in standard deviations: e^(−12.5) = 4e-6 of its peak is left out.
-const REACH: f64 = 5.0;
+pub(super) const REACH: f64 = 5.0;
 
 /// A run of cells along one axis; starts below 0 and ends beyond the field only where the field goes around.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

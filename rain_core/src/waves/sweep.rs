@@ -1,7 +1,9 @@
 //! A source that moves: the wheel, foot or paw that goes from A to B within a frame.
 
+use super::border::Border;
 use super::erf::erf_f32;
 use super::field::WaveField;
+use super::patch::REACH;
 use crate::constants::WATER_DENSITY;
 use crate::error::{ConfigError, in_range};
 use crate::ops;
@@ -20,6 +22,9 @@ fn frame(point: [f64; 2], from: [f64; 2], to: [f64; 2], width: f64) -> (f64, f64
 
 /// Sum of an impulse's force over that of its weight, below which the force is as good as whole.
 const SMALL_BALANCE: f64 = 1e-3;
+
+/// Longest way over a tile, in its shorter sides.
+const LONGEST_ON_TILE: f64 = 64.0;
 
 /// Segments shorter than this, over the width, are done by the series in double precision.
 const SHORT: f64 = 0.05;
@@ -205,7 +210,7 @@ pub enum Push {
 pub struct SweptSource {
     /// Where it was, (x, z). Units: m from the field's corner. Domain: [−1e5, 1e5].
     pub from_m: [f32; 2],
-    /// Where it is. Units: m.
+    /// Where it is. Units: m. On a tile at most 64 of its shorter sides from where it was.
     pub to_m: [f32; 2],
     /// Standard deviation of its footprint; a tyre of width b has b/√12. Units: m. Domain: [1e-4, 100]; widened to two
     /// cells.
@@ -234,14 +239,64 @@ impl WaveField {
     /// Adds the source of one frame. Two halves of the way with half the push each do the same as the whole.
     ///
     /// Dry cells, fixed borders and what lies outside are left out; an impulse still moves no water in sum. Costs some
-    /// ten ns for each cell within 5 s of the way, twice that by shores and borders.
+    /// ten ns for each cell within 5 s of the way, twice that by shores and borders. On a tile ([`Border::Periodic`]) a
+    /// way goes around as often as it has to; of a footprint whose 10 s are more than 7/8 of a side the farthest tail is
+    /// left out.
     ///
     /// # Errors
     /// [`ConfigError::OutOfRange`] for a field of `source` outside its domain or not finite; then nothing has changed.
     pub fn add_swept(&mut self, source: &SweptSource) -> Result<(), ConfigError> {
         source.check()?;
+        let width = f64::from(source.width_m).max(2.0 * self.settings.cell_m);
+        let parts = self.parts(source, width)?;
+        if parts == 1 {
+            self.add_part(source, width);
+            return Ok(());
+        }
+        let [from, to] = [source.from_m, source.to_m].map(|point| point.map(f64::from));
+        let share = 1.0 / parts as f32;
+        let place = |part: u32| {
+            let t = f64::from(part) / f64::from(parts);
+            [0, 1].map(|axis| (from[axis] + t * (to[axis] - from[axis])) as f32)
+        };
+        for part in 0..parts {
+            self.add_part(
+                &SweptSource {
+                    from_m: place(part),
+                    to_m: place(part + 1),
+                    push: match source.push {
+                        Push::Height(height) => Push::Height(height * share),
+                        Push::Impulse(impulse) => Push::Impulse(impulse * share),
+                    },
+                    ..*source
+                },
+                width,
+            );
+        }
+        Ok(())
+    }
+
+    /// Into how many parts a way must be cut so that none reaches around a tile into itself.
+    fn parts(&self, source: &SweptSource, width: f64) -> Result<u32, ConfigError> {
+        if self.settings.border != Border::Periodic {
+            return Ok(1);
+        }
+        let cells = [self.rules.nx, self.rules.nz];
+        let sides = cells.map(|cells| cells as f64 * self.settings.cell_m);
+        let ways = [0, 1].map(|axis| (f64::from(source.to_m[axis]) - f64::from(source.from_m[axis])).abs());
+        let tiles = ways[0].max(ways[1]) / sides[0].min(sides[1]);
+        let allowed = "a way of at most 64 tiles";
+        in_range("to_m, tiles from from_m", tiles, 0.0, LONGEST_ON_TILE, allowed)?;
+        let parts = [0, 1].map(|axis| {
+            let room = (sides[axis] - 2.0 * REACH * width).max(0.125 * sides[axis]);
+            (ways[axis] / room).ceil()
+        });
+        Ok(parts[0].max(parts[1]).max(1.0) as u32)
+    }
+
+    /// A source whose parts do not overlap around a tile. Its width is two cells or more.
+    fn add_part(&mut self, source: &SweptSource, width: f64) {
         let cell = self.settings.cell_m;
-        let width = f64::from(source.width_m).max(2.0 * cell);
         let segment = Segment::new(source.from_m, source.to_m, width as f32);
         let [from, to] = [source.from_m, source.to_m].map(|point| point.map(f64::from));
         let low = [from[0].min(to[0]), from[1].min(to[1])];
@@ -275,7 +330,7 @@ impl WaveField {
             }
         }
         if weight_sum <= 0.0 {
-            return Ok(());
+            return;
         }
         // What the force moves in sum is taken back: where no border or shore cuts it that is the little beyond its
         // reach, the same for all cells; else it is much, and follows the weight so that no step is left around the
@@ -297,6 +352,5 @@ impl WaveField {
         self.sum_now += height * weight_sum;
         self.sum_before += height * weight_sum;
         self.still = false;
-        Ok(())
     }
 }

@@ -420,6 +420,58 @@ fn two_half_ways_are_one() {
 }
 
 #[test]
+fn a_way_goes_around_a_tile_as_often_as_it_has_to() {
+    let (nx, nz, cell) = (64_usize, 48_usize, 0.004);
+    let sides = [nx as f64 * cell, nz as f64 * cell];
+    let swept = |from_m: [f32; 2], to_m: [f32; 2], width_m: f32| {
+        let mut field = pond(Border::Periodic);
+        let push = Push::Height(1e-3);
+        let source = SweptSource {
+            from_m,
+            to_m,
+            width_m,
+            push,
+        };
+        field.add_swept(&source).map(|()| field)
+    };
+    let mut worst = Worst::default();
+    let mut cut = Worst::default();
+    for (from, to, width) in [
+        ([0.1_f32, 0.1_f32], [0.16_f32, 0.11_f32], 0.008_f32),
+        ([0.1, 0.1], [0.5, 0.1], 0.008),
+        ([0.02, 0.19], [0.02, -0.4], 0.015),
+        ([-0.3, 0.05], [1.1, 0.9], 0.008),
+        ([0.1, 0.1], [0.11, 0.1], 0.019),
+        ([0.1, 0.1], [0.4, 0.3], 0.017),
+    ] {
+        let field = swept(from, to, width).expect("not far");
+        let [from, to] = [from, to].map(|at| at.map(f64::from));
+        let weight = |x: f64, z: f64| swept_weight([x, z], from, to, f64::from(width));
+        for (index, height) in field.heights().iter().enumerate() {
+            let [x, z] = [index % nx, index / nx].map(|i| (i as f64 + 0.5) * cell);
+            let mut sum = 0.0;
+            for (i, j) in (-8..=8).flat_map(|i| (-8..=8).map(move |j| (i, j))) {
+                sum += weight(x + f64::from(i) * sides[0], z + f64::from(j) * sides[1]);
+            }
+            let place = || format!("{from:?} {to:?} {width}, cell {index}");
+            worst.absolute(1e3 * f64::from(*height), sum, place);
+            cut.absolute(1e3 * f64::from(*height), weight(x, z), place);
+        }
+        let volume = 1e-3 * std::f64::consts::TAU * f64::from(width * width);
+        assert!(
+            (field.volume_m3() / volume - 1.0).abs() < 2e-4,
+            "{}",
+            field.volume_m3() / volume
+        );
+    }
+    worst.assert_below(2e-4, 6 * nx * nz);
+    assert!(cut.error > 0.1, "one time around would be seen: {}", cut.error);
+    assert!(swept([0.0, 0.0], [0.0, 12.28], 0.008).is_ok(), "64 tiles");
+    let error = swept([0.0, 0.0], [0.0, 12.3], 0.008).expect_err("more").to_string();
+    assert!(error.starts_with("to_m") && error.contains("64 tiles"), "{error}");
+}
+
+#[test]
 fn an_impulse_moves_no_water_in_sum_by_walls_and_shores_either() {
     for (from_m, to_m) in [
         ([0.10, 0.09], [0.14, 0.10]),
