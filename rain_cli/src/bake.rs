@@ -12,6 +12,8 @@ use rain_core::surface::basins::{BakeOptions, BakeReport, Basins, Grid};
 use rain_core::surface::height_field::{HeightField, HeightFieldError, ImportLimits, MAX_COORDINATE_M};
 use serde_json::{Value, json};
 
+use crate::print;
+
 /// Cell of a scene where none is given. Units: m.
 pub const SCENE_CELL_M: f64 = 0.25;
 /// Shallowest basin of a scene where nothing is said: its single-precision corners make flat ground uneven. Units: m.
@@ -89,9 +91,7 @@ pub fn run(args: &BakeArgs) -> ExitCode {
             } else {
                 report_table(&report)
             };
-            // A closed pipe is no error of ours.
-            let _ = writeln!(std::io::stdout(), "{text}");
-            ExitCode::SUCCESS
+            print::finish(&text, 0)
         }
         Err(message) => {
             let _ = writeln!(std::io::stderr(), "rain: {message}");

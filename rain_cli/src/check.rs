@@ -1,12 +1,14 @@
 //! `rain check`.
 
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
 use quick_junit::{NonSuccessKind, Report as JunitReport, TestCase, TestCaseStatus, TestSuite};
+use rain_cli::print;
 use rain_plugins::scenario::RunOptions;
 
 #[derive(Debug, Args)]
@@ -98,27 +100,24 @@ pub fn check(args: &CheckArgs) -> ExitCode {
         let _ = writeln!(std::io::stderr(), "rain: cannot write {}: {error}", file.display());
         code = code.max(2);
     }
-    let mut out = std::io::stdout();
-    if args.json {
+    let text = if args.json {
         let list: Vec<_> = rows
             .iter()
             .map(
                 |r| serde_json::json!({"scenario": r.scenario, "text": r.text, "passed": r.passed, "detail": r.detail}),
             )
             .collect();
-        let _ = writeln!(
-            out,
-            "{}",
-            serde_json::json!({"passed": passed, "failed": failed, "rows": list})
-        );
+        serde_json::json!({"passed": passed, "failed": failed, "rows": list}).to_string()
     } else {
+        let mut text = String::new();
         for r in &rows {
             let mark = if r.passed { "ok  " } else { "FAIL" };
-            let _ = writeln!(out, "{mark} {}: {} {}", r.scenario, r.text, r.detail);
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{mark} {}: {} {}", r.scenario, r.text, r.detail);
         }
-        let _ = writeln!(out, "{passed} passed, {failed} failed");
-    }
-    ExitCode::from(code)
+        text + &format!("{passed} passed, {failed} failed")
+    };
+    print::finish(&text, code)
 }
 
 /// Every scenario of the paths, folders searched to the bottom, sorted.

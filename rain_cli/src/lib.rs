@@ -5,3 +5,4 @@
 pub mod bake;
 pub mod bench;
 pub mod model;
+pub mod print;

@@ -8,7 +8,7 @@ mod run;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use rain_cli::{bake, bench, model};
+use rain_cli::{bake, bench, model, print};
 
 /// Rain for game engines: scenarios, models as a calculator, puddles.
 #[derive(Debug, Parser)]
@@ -38,9 +38,9 @@ fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            let _ = error.print();
+            let printed = error.print();
             // Help and version are no errors; everything else is bad input.
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+            return print::written(printed, if error.use_stderr() { 2 } else { 0 });
         }
     };
     match cli.command {

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rain_cli::print;
 use rain_plugins::scenario::report::Report;
 use rain_plugins::scenario::{Progress, RunError, RunOptions, Scenario, run as run_scenario};
 
@@ -64,8 +65,7 @@ pub fn run(args: &RunArgs) -> ExitCode {
             } else {
                 format!("{}\nresults: {}", report.table(), out.display())
             };
-            let _ = writeln!(std::io::stdout(), "{text}");
-            ExitCode::from(u8::from(!report.passed()))
+            print::finish(&text, u8::from(!report.passed()))
         }
         Err(error) => {
             let _ = writeln!(std::io::stderr(), "rain: {error}");

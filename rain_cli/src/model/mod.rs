@@ -31,6 +31,8 @@ pub use key::{Default, Key, Kind, Returned};
 pub use output::Output;
 use values::Values;
 
+use crate::print;
+
 /// How a model reads the files that its keys name.
 pub type ReadFile<'a> = &'a dyn Fn(&Path) -> io::Result<Vec<u8>>;
 
@@ -135,7 +137,6 @@ pub struct ModelArgs {
 /// Runs `rain model` and prints; returns the exit code.
 #[must_use]
 pub fn run(args: &ModelArgs) -> ExitCode {
-    let mut out = io::stdout();
     let text = match &args.name {
         Some(name) if !args.list => match calculate(name, &args.arguments) {
             Ok(output) if args.json => output.json(),
@@ -160,9 +161,7 @@ pub fn run(args: &ModelArgs) -> ExitCode {
             }
         }
     };
-    // A closed pipe is no error of ours.
-    let _ = writeln!(out, "{text}");
-    ExitCode::SUCCESS
+    print::finish(&text, 0)
 }
 
 /// The models and their keys for people.

@@ -1,7 +1,7 @@
 //! `rain model`, `rain bake` and `rain bench` as processes: output, messages, exit codes.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
@@ -56,6 +56,50 @@ fn file(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> String {
 
 fn folder() -> tempfile::TempDir {
     tempfile::TempDir::new().expect("a temporary folder")
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error_and_a_closed_pipe_is_not() {
+    let folder = folder();
+    let heights = file(&folder, "h.csv", b"1,1,1\n1,0,1\n1,1,1\n");
+    for arguments in [
+        vec!["model", "fall", "diameter_mm=5", "height_m=2"],
+        vec!["model", "fall", "diameter_mm=5", "height_m=2", "--json"],
+        vec!["model"],
+        vec!["bake", &heights],
+        vec!["bake", &heights, "--json"],
+        vec!["--help"],
+        vec!["--version"],
+    ] {
+        let start = |stdout: Stdio| {
+            Command::new(env!("CARGO_BIN_EXE_rain"))
+                .args(&arguments)
+                .stdout(stdout)
+                .stderr(Stdio::piped())
+                .spawn()
+                .expect("the program starts")
+        };
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full");
+        let output = start(full.expect("every Linux has it").into()).wait_with_output();
+        let output = output.expect("it ends");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(
+            message.starts_with("rain: cannot write to stdout: ") && message.contains("space"),
+            "{arguments:?}: {message}"
+        );
+        // Whoever was to read has gone.
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let output = start(writer.into()).wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert!(
+            output.stderr.is_empty(),
+            "{arguments:?}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
 }
 
 #[test]
