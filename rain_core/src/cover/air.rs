@@ -7,7 +7,9 @@
 //! A cell is closed when a surface touches it, so gaps narrower than about two cells (0.5 m) count as shut. Surfaces
 //! one can see through must not be added.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::hash_map::DefaultHasher;
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::hash::BuildHasherDefault;
 
 use glam::{DVec3, IVec3, Vec3};
 
@@ -28,6 +30,9 @@ pub struct AirGrid {
     index: BTreeMap<[i32; 3], Vec<(u64, u32)>>,
     /// Blocks rasterised so far: a bit a cell.
     blocks: BTreeMap<[i32; 3], Vec<u64>>,
+    /// Cells of the last flood in the order they were found, and the same to be asked for. Kept for their room.
+    found: Vec<IVec3>,
+    seen: HashSet<IVec3, BuildHasherDefault<DefaultHasher>>,
 }
 
 /// What a flood found.
@@ -73,38 +78,48 @@ impl AirGrid {
     ///
     /// `reached` says whether rain reaches a point. An eye inside a surface's own cell starts from the free cells next
     /// to it; with none, the air counts as open.
+    ///
+    /// Allocates when it is larger than all before, where it meets blocks of the lattice for the first time since a
+    /// surface in them changed, and the cells of closed-in air: keep these, and ask again only when the eye leaves them
+    /// or a surface changes.
     pub fn flood(&mut self, eye: DVec3, range_m: f64, mut reached: impl FnMut(DVec3) -> bool) -> Air {
         let start = cell_of(eye);
-        let mut seen = BTreeSet::new();
-        let mut queue = VecDeque::new();
+        self.found.clear();
+        self.seen.clear();
         for offset in NEIGHBOURS.iter().copied().chain([IVec3::ZERO]) {
-            let cell = start + offset;
-            if !self.solid(cell) && (offset == IVec3::ZERO || self.solid(start)) && seen.insert(cell.to_array()) {
-                queue.push_back(cell);
+            if !self.solid(start + offset) && (offset == IVec3::ZERO || self.solid(start)) {
+                self.find(start + offset);
             }
         }
-        if queue.is_empty() {
+        if self.found.is_empty() {
             return Air::Open;
         }
         let reach = (range_m / AIR_CELL_M).ceil() as i32;
-        while let Some(cell) = queue.pop_front() {
+        let mut next = 0;
+        while let Some(&cell) = self.found.get(next) {
+            next += 1;
             if reached((cell.as_dvec3() + 0.5) * AIR_CELL_M) {
                 return Air::Open;
             }
-            if seen.len() > MAX_CELLS {
+            if self.found.len() > MAX_CELLS {
                 return Air::Open;
             }
             for offset in NEIGHBOURS {
-                let next = cell + offset;
-                let away = next - start;
-                if away.dot(away) > reach * reach || seen.contains(&next.to_array()) || self.solid(next) {
-                    continue;
+                let beside = cell + offset;
+                let away = beside - start;
+                if away.dot(away) <= reach * reach && !self.seen.contains(&beside) && !self.solid(beside) {
+                    self.find(beside);
                 }
-                seen.insert(next.to_array());
-                queue.push_back(next);
             }
         }
-        Air::ClosedIn(seen)
+        Air::ClosedIn(self.found.iter().map(IVec3::to_array).collect())
+    }
+
+    /// Adds a cell to the flood, once.
+    fn find(&mut self, cell: IVec3) {
+        if self.seen.insert(cell) {
+            self.found.push(cell);
+        }
     }
 
     fn solid(&mut self, cell: IVec3) -> bool {

@@ -28,14 +28,18 @@ pub struct HeightTile {
 }
 
 impl HeightTile {
-    /// A tile filled by `draw`, which gets the cells at [`OPEN_SKY`].
-    pub(crate) fn drawn(reuse: Option<Self>, draw: impl FnOnce(&mut [f32])) -> Self {
-        let mut heights = reuse.map(|t| t.heights).unwrap_or_default();
-        heights.clear();
-        heights.resize(TILE_CELLS * TILE_CELLS, OPEN_SKY);
-        draw(&mut heights);
-        let highest = heights.iter().copied().fold(OPEN_SKY, f32::max);
-        Self { heights, highest }
+    fn empty() -> Self {
+        Self {
+            heights: vec![OPEN_SKY; TILE_CELLS * TILE_CELLS],
+            highest: OPEN_SKY,
+        }
+    }
+
+    /// Fills the tile by `draw`, which gets the cells at [`OPEN_SKY`].
+    fn redraw(&mut self, draw: impl FnOnce(&mut [f32])) {
+        self.heights.fill(OPEN_SKY);
+        draw(&mut self.heights);
+        self.highest = self.heights.iter().copied().fold(OPEN_SKY, f32::max);
     }
 
     /// Heights above the reference plane, row by row, [`OPEN_SKY`] where nothing covers. Units: m.
@@ -97,12 +101,13 @@ impl HeightTiles {
         self.highest
     }
 
-    pub(crate) fn take(&mut self, key: TileKey) -> Option<HeightTile> {
-        self.tiles.remove(&key)
+    pub(crate) fn remove(&mut self, key: TileKey) {
+        self.tiles.remove(&key);
     }
 
-    pub(crate) fn put(&mut self, key: TileKey, tile: HeightTile) {
-        self.tiles.insert(key, tile);
+    /// Fills a tile by `draw`, which gets the cells at [`OPEN_SKY`]. Allocates it where there was none.
+    pub(crate) fn redraw(&mut self, key: TileKey, draw: impl FnOnce(&mut [f32])) {
+        self.tiles.entry(key).or_insert_with(HeightTile::empty).redraw(draw);
     }
 
     pub(crate) fn find_highest(&mut self) {

@@ -1,7 +1,7 @@
 //! The occluders of a scene and the tiles drawn from them; what moves redraws only the tiles it touches.
 
 use super::error::CoverError;
-use super::height_tiles::{HeightTile, HeightTiles, TILE_CELLS, TileKey};
+use super::height_tiles::{HeightTiles, TILE_CELLS, TileKey};
 use super::projection::FallSlope;
 use super::raster::{FixedTriangle, MAX_SPAN, Projected, UNITS_PER_M, project_triangle};
 use crate::error::{ConfigError, in_range};
@@ -51,7 +51,7 @@ pub struct SkippedTriangles {
     pub edge_on: usize,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Occluder {
     /// As given: drawn again when the fall direction changes.
     triangles: Vec<[DVec3; 3]>,
@@ -64,18 +64,30 @@ struct Occluder {
 impl Occluder {
     fn new(
         id: OccluderId,
-        triangles: Vec<[DVec3; 3]>,
+        triangles: &[[DVec3; 3]],
         settings: &CoverSettings,
         drift: DVec2,
     ) -> Result<Self, CoverError> {
-        let mut o = Self {
-            triangles,
-            projected: Vec::new(),
-            bins: Vec::new(),
-            skipped: SkippedTriangles::default(),
-        };
+        let mut occluder = Self::default();
+        occluder.set(id, triangles, settings, drift)?;
+        Ok(occluder)
+    }
+
+    /// Becomes another, in the room that there is. After an error it is of no use but for that.
+    fn set(
+        &mut self,
+        id: OccluderId,
+        triangles: &[[DVec3; 3]],
+        settings: &CoverSettings,
+        drift: DVec2,
+    ) -> Result<(), CoverError> {
+        self.triangles.clear();
+        self.triangles.extend_from_slice(triangles);
+        self.projected.clear();
+        self.bins.clear();
+        self.skipped = SkippedTriangles::default();
         let tile_units = tile_units(settings);
-        for corners in &o.triangles {
+        for corners in triangles {
             for c in corners.iter().filter(|c| c.is_finite()) {
                 in_range(
                     "triangle corner x",
@@ -103,15 +115,15 @@ impl Occluder {
             let t = match project_triangle(corners, settings.reference_height_m, drift) {
                 Projected::Triangle(t) => t,
                 Projected::NonFinite => {
-                    o.skipped.non_finite += 1;
+                    self.skipped.non_finite += 1;
                     continue;
                 }
                 Projected::Degenerate => {
-                    o.skipped.degenerate += 1;
+                    self.skipped.degenerate += 1;
                     continue;
                 }
                 Projected::EdgeOn => {
-                    o.skipped.edge_on += 1;
+                    self.skipped.edge_on += 1;
                     continue;
                 }
                 Projected::TooWide(extent_m) => {
@@ -131,7 +143,7 @@ impl Occluder {
                     allowed: settings.max_tiles,
                 });
             }
-            let index = o.projected.len() as u32;
+            let index = self.projected.len() as u32;
             for x in xs[0]..=xs[1] {
                 for z in zs[0]..=zs[1] {
                     // Coordinates are at most about 1e7 m and a tile at least 1 m: keys fit.
@@ -140,14 +152,25 @@ impl Occluder {
                         z: z as i32,
                     };
                     if t.touches(key, tile_units) {
-                        o.bins.push((key, index));
+                        self.bins.push((key, index));
                     }
                 }
             }
-            o.projected.push(t);
+            self.projected.push(t);
         }
-        o.bins.sort_unstable();
-        Ok(o)
+        self.bins.sort_unstable();
+        Ok(())
+    }
+
+    fn copy_from(&mut self, other: &Self) {
+        self.triangles.clone_from(&other.triangles);
+        self.projected.clone_from(&other.projected);
+        self.bins.clone_from(&other.bins);
+        self.skipped = other.skipped;
+    }
+
+    fn touches(&self, key: TileKey) -> bool {
+        self.bins.binary_search_by_key(&key, |(k, _)| *k).is_ok()
     }
 
     fn tiles(&self) -> impl Iterator<Item = TileKey> {
@@ -175,6 +198,11 @@ fn cell_units(settings: &CoverSettings) -> i64 {
 /// Changes are noted at once and drawn by [`Self::update`]; until then questions see the tiles as last drawn.
 /// The result depends only on what is in the scene and how the rain falls, bit for bit, not on the order or history of
 /// changes.
+///
+/// [`Self::add`] allocates an occluder, [`Self::set_slope`] all of them anew when the lattice direction changes.
+/// [`Self::replace`] and [`Self::update`] allocate only what grows: for an occluder with more triangles, or in more
+/// tiles, than it or the largest before had, and where it comes into a tile (16 KiB if nothing was in it). Questions
+/// allocate nothing.
 #[derive(Debug, Clone)]
 pub struct CoverScene {
     settings: CoverSettings,
@@ -184,9 +212,71 @@ pub struct CoverScene {
     /// Drift that the tiles were last drawn with.
     drawn_drift: DVec2,
     occluders: BTreeMap<OccluderId, Occluder>,
-    users: BTreeMap<TileKey, BTreeSet<OccluderId>>,
-    dirty: BTreeSet<TileKey>,
+    users: Users,
+    dirty: DirtyTiles,
     tiles: HeightTiles,
+    /// Room for the occluder that replaces another.
+    spare: Occluder,
+}
+
+/// The occluders in each tile that has any.
+type Users = BTreeMap<TileKey, BTreeSet<OccluderId>>;
+
+fn attach(users: &mut Users, id: OccluderId, occluder: &Occluder) {
+    for key in occluder.tiles() {
+        users.entry(key).or_default().insert(id);
+    }
+}
+
+fn check_tiles(users: &Users, settings: &CoverSettings) -> Result<(), CoverError> {
+    let (needed, allowed) = (users.len(), settings.max_tiles);
+    if needed > allowed {
+        Err(CoverError::TooManyTiles { needed, allowed })
+    } else {
+        Ok(())
+    }
+}
+
+/// Tiles to be drawn again.
+#[derive(Debug, Clone, Default)]
+struct DirtyTiles {
+    /// Some more than once.
+    keys: Vec<TileKey>,
+    /// Of them at the beginning: sorted, and none twice.
+    sorted: usize,
+}
+
+impl DirtyTiles {
+    fn add(&mut self, occluder: &Occluder) {
+        self.keys.extend(occluder.tiles());
+        // Whoever changes much and never draws must not fill the memory.
+        if self.keys.len() > 2 * self.sorted + 4096 {
+            self.sort();
+        }
+    }
+
+    fn sort(&mut self) {
+        self.keys.sort_unstable();
+        self.keys.dedup();
+        self.sorted = self.keys.len();
+    }
+
+    fn clear(&mut self) {
+        self.keys.clear();
+        self.sorted = 0;
+    }
+}
+
+/// Takes an occluder out of the tiles that `stays` does not touch.
+fn detach(users: &mut Users, id: OccluderId, occluder: &Occluder, stays: &Occluder) {
+    for key in occluder.tiles().filter(|key| !stays.touches(*key)) {
+        if let Some(here) = users.get_mut(&key) {
+            here.remove(&id);
+            if here.is_empty() {
+                users.remove(&key);
+            }
+        }
+    }
 }
 
 impl CoverScene {
@@ -221,9 +311,10 @@ impl CoverScene {
             drift,
             drawn_drift: drift,
             occluders: BTreeMap::new(),
-            users: BTreeMap::new(),
-            dirty: BTreeSet::new(),
+            users: Users::new(),
+            dirty: DirtyTiles::default(),
             tiles: HeightTiles::default(),
+            spare: Occluder::default(),
         })
     }
 
@@ -274,13 +365,13 @@ impl CoverScene {
         if self.occluders.contains_key(&id) {
             return Err(CoverError::DuplicateOccluder { id });
         }
-        let occluder = Occluder::new(id, triangles.to_vec(), &self.settings, self.drift)?;
-        self.attach(id, &occluder);
-        if let Err(error) = self.check_tiles() {
-            self.detach(id, &occluder);
+        let occluder = Occluder::new(id, triangles, &self.settings, self.drift)?;
+        attach(&mut self.users, id, &occluder);
+        if let Err(error) = check_tiles(&self.users, &self.settings) {
+            detach(&mut self.users, id, &occluder, &Occluder::default());
             return Err(error);
         }
-        self.soil(&occluder);
+        self.dirty.add(&occluder);
         self.occluders.insert(id, occluder);
         Ok(())
     }
@@ -290,26 +381,24 @@ impl CoverScene {
     /// # Errors
     /// When the id is not in use, and as in [`Self::add`].
     pub fn replace(&mut self, id: OccluderId, triangles: &[[DVec3; 3]]) -> Result<(), CoverError> {
-        match self.occluders.get(&id) {
-            None => return Err(CoverError::UnknownOccluder { id }),
-            Some(old) if old.triangles == triangles => return Ok(()),
-            Some(_) => (),
-        }
-        let new = Occluder::new(id, triangles.to_vec(), &self.settings, self.drift)?;
-        let Some(old) = self.occluders.remove(&id) else {
+        let Some(held) = self.occluders.get_mut(&id) else {
             return Err(CoverError::UnknownOccluder { id });
         };
-        self.detach(id, &old);
-        self.attach(id, &new);
-        let checked = self.check_tiles();
-        if checked.is_err() {
-            self.detach(id, &new);
-            self.attach(id, &old);
-            self.occluders.insert(id, old);
+        if held.triangles == triangles {
+            return Ok(());
+        }
+        let new = &mut self.spare;
+        new.set(id, triangles, &self.settings, self.drift)?;
+        attach(&mut self.users, id, new);
+        detach(&mut self.users, id, held, new);
+        let checked = check_tiles(&self.users, &self.settings);
+        if checked.is_ok() {
+            self.dirty.add(held);
+            self.dirty.add(new);
+            held.copy_from(new);
         } else {
-            self.soil(&old);
-            self.soil(&new);
-            self.occluders.insert(id, new);
+            attach(&mut self.users, id, held);
+            detach(&mut self.users, id, new, held);
         }
         checked
     }
@@ -322,8 +411,8 @@ impl CoverScene {
         let Some(old) = self.occluders.remove(&id) else {
             return Err(CoverError::UnknownOccluder { id });
         };
-        self.detach(id, &old);
-        self.soil(&old);
+        detach(&mut self.users, id, &old, &Occluder::default());
+        self.dirty.add(&old);
         Ok(())
     }
 
@@ -337,20 +426,15 @@ impl CoverScene {
         if drift != self.drift {
             let mut turned = BTreeMap::new();
             for (id, o) in &self.occluders {
-                turned.insert(*id, Occluder::new(*id, o.triangles.clone(), &self.settings, drift)?);
+                turned.insert(*id, Occluder::new(*id, &o.triangles, &self.settings, drift)?);
             }
-            let mut users: BTreeMap<TileKey, BTreeSet<OccluderId>> = BTreeMap::new();
+            let mut users = Users::new();
             for (id, o) in &turned {
-                o.tiles().for_each(|key| _ = users.entry(key).or_default().insert(*id));
+                attach(&mut users, *id, o);
             }
-            if users.len() > self.settings.max_tiles {
-                return Err(CoverError::TooManyTiles {
-                    needed: users.len(),
-                    allowed: self.settings.max_tiles,
-                });
-            }
-            self.dirty.extend(self.users.keys());
-            self.dirty.extend(users.keys());
+            check_tiles(&users, &self.settings)?;
+            self.dirty.keys.extend(self.users.keys().chain(users.keys()));
+            self.dirty.sort();
             (self.occluders, self.users, self.drift) = (turned, users, drift);
         }
         self.slope = slope;
@@ -359,58 +443,30 @@ impl CoverScene {
 
     /// Draws every tile that something changed in and returns how many those were (0 when nothing moved).
     pub fn update(&mut self) -> usize {
-        let dirty = core::mem::take(&mut self.dirty);
+        self.dirty.sort();
         let cell = cell_units(&self.settings);
-        for &key in &dirty {
-            let old = self.tiles.take(key);
-            if let Some(users) = self.users.get(&key) {
-                let tile = HeightTile::drawn(old, |heights| {
-                    for o in users.iter().filter_map(|id| self.occluders.get(id)) {
-                        o.draw(key, cell, heights);
-                    }
-                });
-                self.tiles.put(key, tile);
-            }
+        for &key in &self.dirty.keys {
+            let Some(users) = self.users.get(&key) else {
+                self.tiles.remove(key);
+                continue;
+            };
+            self.tiles.redraw(key, |heights| {
+                for o in users.iter().filter_map(|id| self.occluders.get(id)) {
+                    o.draw(key, cell, heights);
+                }
+            });
         }
-        if !dirty.is_empty() {
+        let count = self.dirty.keys.len();
+        self.dirty.clear();
+        if count > 0 {
             self.tiles.find_highest();
         }
         self.drawn_drift = self.drift;
-        dirty.len()
+        count
     }
 
     /// Fixed-point units of a cell's side.
     pub(super) fn cell_units(&self) -> i64 {
         cell_units(&self.settings)
-    }
-
-    fn attach(&mut self, id: OccluderId, occluder: &Occluder) {
-        occluder
-            .tiles()
-            .for_each(|key| _ = self.users.entry(key).or_default().insert(id));
-    }
-
-    fn detach(&mut self, id: OccluderId, occluder: &Occluder) {
-        for key in occluder.tiles() {
-            if let Some(users) = self.users.get_mut(&key) {
-                users.remove(&id);
-                if users.is_empty() {
-                    self.users.remove(&key);
-                }
-            }
-        }
-    }
-
-    fn soil(&mut self, occluder: &Occluder) {
-        self.dirty.extend(occluder.tiles());
-    }
-
-    fn check_tiles(&self) -> Result<(), CoverError> {
-        let (needed, allowed) = (self.users.len(), self.settings.max_tiles);
-        if needed > allowed {
-            Err(CoverError::TooManyTiles { needed, allowed })
-        } else {
-            Ok(())
-        }
     }
 }

@@ -160,6 +160,8 @@ impl Container {
     ///
     /// Error: the drops are those of [`for_each_drop`] within reach and view, save within 1e-4 m of their borders;
     /// positions 1e-5 m, presence 1e-4.
+    ///
+    /// Allocates only where it holds more drops than ever before.
     #[must_use = "false says that drops were left out"]
     pub fn fill(
         &mut self,
