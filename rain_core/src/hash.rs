@@ -2,7 +2,7 @@
 //!
 //! The same functions exist in WGSL (`rain_render/shaders/lib/hash.wgsl`); a test compares the two bit for bit.
 
-/// PCG-RXS-M-XS on 32 bits. Source: Jarzynski & Olano 2020.
+/// PCG-RXS-M-XS on 32 bits. Source: Jarzynski & Olano 2020. Error: none, integers.
 #[must_use]
 pub fn pcg(v: u32) -> u32 {
     let s = v.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
@@ -10,7 +10,7 @@ pub fn pcg(v: u32) -> u32 {
     (w >> 22) ^ w
 }
 
-/// Three independent 32-bit hashes of three integers. Source: Jarzynski & Olano 2020, `pcg3d`.
+/// Three independent 32-bit hashes of three integers. Source: Jarzynski & Olano 2020, `pcg3d`. Error: none, integers.
 #[must_use]
 pub fn pcg3d(v: [u32; 3]) -> [u32; 3] {
     let [mut x, mut y, mut z] = v.map(|c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
@@ -26,13 +26,14 @@ pub fn pcg3d(v: [u32; 3]) -> [u32; 3] {
     [x, y, z]
 }
 
-/// Uniform in [0, 1) from the upper 24 bits; never rounds to 1.
+/// Uniform in [0, 1) from the upper 24 bits; never rounds to 1. Error: none; h/2³² is cut to 2⁻²⁴.
 #[must_use]
 pub fn unit_f32(h: u32) -> f32 {
     (h >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// Uniform in (0, 1): the centre of one of 2²³ intervals, so its logarithm is finite.
+/// Uniform in (0, 1): the centre of one of 2²³ intervals, so its logarithm is finite. Error: none; h/2³² is moved by no
+/// more than 2⁻²⁴.
 #[must_use]
 pub fn open_unit_f32(h: u32) -> f32 {
     // 24 bits and a half need 25: one bit less keeps the sum exact and below 1.

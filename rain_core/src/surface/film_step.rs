@@ -61,7 +61,8 @@ pub fn drained_film_f32(depth_m: f32, drain: f32, dt_s: f32) -> f32 {
     h / (x * x.sqrt())
 }
 
-/// One step of the film. Units: m. Error: second order in dt (see the module); none without rain or without drain.
+/// One step of the film. Units: m. Error: second order in dt: 8.2e-3 of the film after a minute in steps of 20 s, 5.2e-4
+/// in steps of 5 s, 2.1e-5 in steps of 1 s (see the module); rounding without rain or without drain.
 #[must_use]
 pub fn film_step(depth_m: f64, rain_m_s: f64, drain: f64, dt_s: f64) -> f64 {
     let dt = within(dt_s, MAX_STEP_S);

@@ -435,6 +435,9 @@ proptest! {
         prop_assert!(film_step(h, rain, 1.1 * drain, dt) <= after);
         let cut = drained_film(drained_film(h, drain, 0.3 * dt), drain, 0.7 * dt);
         prop_assert!((cut - drained_film(h, drain, dt)).abs() <= 1e-14 * cut);
+        prop_assert_eq!(film_step(h, 0.0, drain, dt), drained_film(h, drain, dt), "no rain");
+        let filled = h + rain * dt;
+        prop_assert!((film_step(h, rain, 0.0, dt) - filled).abs() <= 1e-15 * filled, "no drain");
     }
 }
 
