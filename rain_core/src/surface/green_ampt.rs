@@ -90,7 +90,7 @@ impl GreenAmpt {
         Ok(self)
     }
 
-    /// M = ψ Δθ. Units: mm.
+    /// M = ψ Δθ. Units: mm. Error: one rounding.
     #[must_use]
     pub fn front_mm(&self) -> f64 {
         self.suction_mm * self.moisture_deficit

@@ -96,6 +96,7 @@ impl ParaboloidPuddle {
     }
 
     /// How long until the puddle without inflow is dry, h/e. Units: s, m, m/s. `None` without loss, 0 when dry.
+    /// Error: 1e-15 relative.
     #[must_use]
     pub fn drying_time_s(level_m: f64, loss_m_s: f64) -> Option<f64> {
         let h = within(level_m, 1e3);

@@ -92,7 +92,7 @@ impl SheetFlow {
     }
 
     /// Steady depth at x from the top, (i x/α)^(1/m). Units: m. x is clamped to the plane, NaN counts as 0.
-    /// Error: 1e-14 relative.
+    /// Error: 2e-15 relative.
     #[must_use]
     pub fn steady_depth_m(&self, x_m: f64) -> f64 {
         let ratio = self.rain_m_s * self.on_plane(x_m) / self.coefficient;
@@ -104,7 +104,7 @@ impl SheetFlow {
     }
 
     /// Time to equilibrium of the foot, h(L)/i. Units: s. 0 without rain (it is dry at once).
-    /// Error: 1e-14 relative.
+    /// Error: 2e-15 relative.
     #[must_use]
     pub fn equilibrium_time_s(&self) -> f64 {
         if self.rain_m_s > 0.0 {
@@ -143,7 +143,8 @@ impl SheetFlow {
     /// steady. Units: m.
     ///
     /// After short rain the depth i·duration moves down the plane unchanged until the recession from the steady part
-    /// above overtakes it, so it is the smaller of the two. Error: 1e-14 relative.
+    /// above overtakes it, so it is the smaller of the two. Error: 1e-14 relative to that; 1e-5 against characteristics
+    /// followed in steps, which is as far as those reach.
     #[must_use]
     pub fn depth_m(&self, x_m: f64, time_s: f64, duration_s: f64) -> f64 {
         let duration = duration_s.max(0.0);

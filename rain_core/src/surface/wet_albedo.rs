@@ -13,7 +13,7 @@
 //! At normal incidence and averaged over exit directions the formula is exact for a Lambertian body under smooth water
 //! (1e-8 against Fresnel's equations integrated). n_r from 1.5 to 1.6 moves the ratio by less than 0.001. Media whose
 //! pores fill also scatter more forward and darken further (Twomey et al. 1986): real soils by up to 20 % more. The
-//! constant factor 0.3 of the source systems is off by up to 0.6 in albedo (light bodies).
+//! constant factor 0.3 of the source systems is off by up to 0.68 in albedo (light bodies).
 
 use crate::constants::WATER_IOR;
 use crate::optics::fresnel;
@@ -80,7 +80,7 @@ impl WetBody {
 
     /// Albedo of the body for light that comes at an angle, averaged over exit directions: the share 1 − F enters.
     /// With the mirror's F it never exceeds 1 (white furnace). `cos_incidence` is clamped to [0, 1], NaN counts as 0.
-    /// Error: 2e-15 against the formula.
+    /// Error: 2e-15 against the formula, 1e-8 against Fresnel's equations integrated, bounce by bounce.
     #[must_use]
     pub fn albedo_at(&self, dry: f64, cos_incidence: f64) -> f64 {
         let b = self.body(unit(dry));
@@ -115,7 +115,8 @@ fn unit_f32(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
 
-/// Albedo of a body soaked with water, by Lekner & Dorf: [`WetBody::albedo`] of [`WetBody::LEKNER_DORF`].
+/// Albedo of a body soaked with water, by Lekner & Dorf: [`WetBody::albedo`] of [`WetBody::LEKNER_DORF`]. Units: none.
+/// `dry` is clamped to [0, 1], NaN counts as 0. Error: 5e-9 against the printed formula with R̄ by quadrature.
 #[must_use]
 pub fn wet_albedo(dry: f64) -> f64 {
     WetBody::LEKNER_DORF.albedo(dry)
@@ -128,7 +129,7 @@ pub fn wet_albedo_f32(dry: f32) -> f32 {
     WetBody::LEKNER_DORF.albedo_f32(dry)
 }
 
-/// [`wet_albedo_f32`] of each channel (linear, not sRGB): wetting also makes colours more saturated.
+/// [`wet_albedo_f32`] of each channel (linear, not sRGB): wetting also makes colours more saturated. Error: 3e-7.
 #[must_use]
 #[inline]
 pub fn wet_albedo_rgb(dry: [f32; 3]) -> [f32; 3] {

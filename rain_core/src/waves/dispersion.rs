@@ -57,7 +57,7 @@ fn tanh_over_f32(x: f32) -> f32 {
 
 /// Speed of long waves, √(g h). Units: m/s. `depth_m` clamped to [0, 1e4] m.
 ///
-/// Error: one rounding; model: see [`phase_speed`].
+/// Error: relative 3e-16; model: see [`phase_speed`].
 #[must_use]
 pub fn shallow_speed(depth_m: f64) -> f64 {
     ops::sqrt(GRAVITY * clamped(depth_m, MAX_DEPTH_M))
@@ -121,6 +121,8 @@ pub fn group_speed_f32(wave_number: f32, depth_m: f32) -> f32 {
 }
 
 /// The slowest wave on deep water: (phase speed in m/s, wavelength in m) = ((4gσ/ρ)^¼, 2π√(σ/(ρg))).
+///
+/// Error: relative 1e-14 against halving; model: deep, clean water at 20 °C.
 #[must_use]
 pub fn minimum_phase_speed() -> (f64, f64) {
     (
@@ -131,8 +133,9 @@ pub fn minimum_phase_speed() -> (f64, f64) {
 
 /// Decay rate of the amplitude by viscosity in the bulk, 2νk² (Lamb 1932, § 348). Units: 1/s; k in rad/m, clamped.
 ///
-/// Twice this is the energy's rate and the `damping_per_s` of the wave equation. Error: one rounding; model: clean
-/// surface, waves much longer than √(ν/ω).
+/// Twice this is the energy's rate and the `damping_per_s` of the wave equation.
+///
+/// Error: relative 1e-15; model: clean surface, waves much longer than √(ν/ω).
 #[must_use]
 pub fn bulk_damping(wave_number: f64) -> f64 {
     let k = clamped(wave_number, MAX_WAVE_NUMBER);

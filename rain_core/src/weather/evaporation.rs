@@ -6,7 +6,8 @@ use crate::ops;
 
 /// Saturation vapour pressure over water, 611.2 exp(17.67 T/(T + 243.5)). Units: °C in, Pa out.
 /// Domain: T in [−60, 60] °C; for dew points it goes on to lower ones, as far as −200 °C. T is clamped to [−200, 60] °C
-/// (NaN: −200): the formula has a pole at −243.5 °C. Source: Bolton 1980.
+/// (NaN: −200): the formula has a pole at −243.5 °C. Source: Bolton 1980. Error: 1e-13 relative to the formula; over
+/// water, also below 0 °C.
 #[must_use]
 pub fn saturation_vapour_pressure_pa(temperature_c: f64) -> f64 {
     let t = clamped(temperature_c, -200.0, 60.0);
@@ -26,8 +27,8 @@ pub fn dew_point_c(temperature_c: f64, relative_humidity: f64) -> f64 {
 
 /// Drying power of the air alone, Eₐ = 0.26 (1 + 0.54 u)(e_s − e) mm/day (hPa; u = horizontal wind, taken as that at
 /// 2 m). Units: mm/h. Domain: valid conditions; then finite and ≥ 0. Source: Dalton's law with the wind function of
-/// Penman 1948. Error: 1e-14 relative. Right for deep water at the air's temperature; [`penman_evaporation_mm_h`] adds
-/// the sun.
+/// Penman 1948. Error: 1e-14 relative (or of 1e-3 mm/h). Right for deep water at the air's temperature;
+/// [`penman_evaporation_mm_h`] adds the sun.
 #[must_use]
 pub fn dalton_evaporation_mm_h(conditions: &WeatherConditions) -> f64 {
     let wind = ops::sqrt(conditions.wind_m_s.x * conditions.wind_m_s.x + conditions.wind_m_s.z * conditions.wind_m_s.z);

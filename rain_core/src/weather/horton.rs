@@ -60,7 +60,7 @@ impl Infiltration {
     }
 
     /// Capacity f of soil in which `time_s` of Horton's curve is used up. Units: mm/h, s.
-    /// Times below 0 and NaN count as 0. Domain: valid parameters. Error: 1e-14 relative.
+    /// Times below 0 and NaN count as 0. Domain: valid parameters. Error: 1e-15 of f₀.
     #[must_use]
     pub fn capacity_mm_h(&self, time_s: f64) -> f64 {
         self.curve().capacity(time_s.max(0.0)) * 3600.0
@@ -75,7 +75,7 @@ impl Infiltration {
 
     /// How long the dry soil takes all of a constant rain: until its capacity, which falls with what infiltrates, is
     /// down to the rain. Units: s. `None` if R ≤ f_c: for ever (also without rain and for NaN).
-    /// Domain: valid parameters. Error: 1e-12 relative.
+    /// Domain: valid parameters. Error: 1e-11 relative for R at least 1e-6 of f₀ − f_c above f_c.
     #[must_use]
     pub fn ponding_time_s(&self, rain_mm_h: f64) -> Option<f64> {
         let (curve, rain) = (self.curve(), rain_mm_h.min(1e9) / 3600.0);

@@ -185,7 +185,7 @@ impl WeatherSurfaces {
         }
     }
 
-    /// Advances by `dt_s` under constant conditions. Dew wets nothing.
+    /// Advances by `dt_s` under constant conditions. Dew wets nothing. Error: that of [`SurfaceColumn::advance`].
     ///
     /// # Errors
     /// When the conditions are invalid, or the time not finite or outside [0, 1e9] s. Then nothing changes.
@@ -208,6 +208,9 @@ impl WeatherSurfaces {
 
     /// Advances from t0_s to t1_s of a timeline: constant spells whole, the rest in pieces of [`VARYING_STEP_S`] at
     /// most, each with its exact mean. Returns the mean conditions over [t0_s, t1_s].
+    ///
+    /// Error: any ticks from 1/128 s to 12 s end within 1e-6 of each amount (or of 1e-3 mm); a piece is made short enough
+    /// to err by less than 3e-8 mm by estimate.
     ///
     /// # Errors
     /// When a time is not finite, beyond ±1e9 s, or t1_s < t0_s. Then nothing changes.

@@ -111,7 +111,7 @@ impl Timeline {
         &self.keys
     }
 
-    /// The conditions at `time_s`.
+    /// The conditions at `time_s`. Error: 1e-12 of the largest value (500 mm/h, 40 °C).
     ///
     /// # Errors
     /// When `time_s` is not finite or beyond ±1e9 s.
@@ -132,7 +132,7 @@ impl Timeline {
     }
 
     /// Mean rain rate over [t0_s, t1_s], exactly (closed form of the linear pieces). Units: mm/h.
-    /// For t0_s = t1_s the rate at that time.
+    /// For t0_s = t1_s the rate at that time. Error: 1e-9 relative (or of 1 mm/h) against sums of trapezia.
     ///
     /// # Errors
     /// When a time is not finite, beyond ±1e9 s, or t1_s < t0_s.
@@ -143,7 +143,8 @@ impl Timeline {
         Ok(self.integral(t0_s, t1_s, |c| c.intensity_mm_h)? / (t1_s - t0_s))
     }
 
-    /// ∫ wind dt over [t0_s, t1_s], exactly: how far the air went. Units: m.
+    /// ∫ wind dt over [t0_s, t1_s], exactly: how far the air went. Units: m. Error: 1e-8 m a second against sums of
+    /// trapezia.
     ///
     /// # Errors
     /// When a time is not finite, beyond ±1e9 s, or t1_s < t0_s.
@@ -152,7 +153,7 @@ impl Timeline {
     }
 
     /// Mean of every field over [t0_s, t1_s], exactly; the drop-size family is that at the middle.
-    /// For t0_s = t1_s the conditions at that time.
+    /// For t0_s = t1_s the conditions at that time. Error: 1e-9 relative (or of 1 mm/h, 40 °C) against sums of trapezia.
     ///
     /// # Errors
     /// When a time is not finite, beyond ±1e9 s, or t1_s < t0_s.

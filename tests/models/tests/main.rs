@@ -12,6 +12,7 @@ mod fall_speed;
 mod hash;
 mod height_field;
 mod light;
+mod quadrature;
 mod spectrum;
 mod splash;
 mod surface;

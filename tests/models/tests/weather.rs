@@ -1,5 +1,7 @@
 //! Weather state: pores and film, Horton, Penman, artists' levels, timelines.
 
+mod closed_forms;
+
 use glam::DVec3;
 use proptest::prelude::*;
 use rain_core::rainfall::Distribution;
@@ -550,6 +552,12 @@ proptest! {
         prop_assert!((mean.intensity_mm_h - wet).abs() <= 1e-9 * wet.max(1.0), "{mean:?} {wet}");
         prop_assert!((timeline.mean_intensity_mm_h(start, end).expect("valid") - wet).abs() <= 1e-9 * wet.max(1.0));
         prop_assert!((mean.air_temperature_c - warm).abs() <= 1e-9 * 40.0, "{mean:?} {warm}");
+        for t in [start, 0.5 * (start + end), end] {
+            let now = timeline.at(t).expect("valid");
+            let (wet, warm) = (truth::value_along(&rain, t), truth::value_along(&heat, t));
+            prop_assert!((now.intensity_mm_h - wet).abs() <= 1e-12 * 500.0, "{now:?} {wet}");
+            prop_assert!((now.air_temperature_c - warm).abs() <= 1e-12 * 40.0, "{now:?} {warm}");
+        }
         let path = timeline.wind_path_m(start, end).expect("valid");
         prop_assert!((path.x - 0.1 * warm * length).abs() <= 1e-8 * length && (path.z - length).abs() <= 1e-9 * length.max(1.0));
     }

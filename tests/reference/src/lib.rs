@@ -4,6 +4,7 @@
 //! Integrals are plain sums over many points, differential equations are stepped by Dormand–Prince with a tight
 //! tolerance, and closed forms are those of the textbooks.
 
+pub mod artist_look;
 pub mod basins;
 pub mod canopy;
 pub mod drop;

@@ -28,6 +28,33 @@ pub fn bisect(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (a + b)
 }
 
+/// P_n(x) by Bonnet's recursion.
+fn legendre(n: usize, x: f64) -> f64 {
+    let (mut before, mut here) = (0.0, 1.0);
+    for k in 1..=n {
+        let k = k as f64;
+        (before, here) = (here, ((2.0 * k - 1.0) * x * here - (k - 1.0) * before) / k);
+    }
+    here
+}
+
+/// Node and weight of the rule of `n` points on [−1, 1], rising: roots by halving between those of one point less, which
+/// they enclose; weights 1/Σ (k + ½) P_k², k < n, where nothing cancels.
+pub fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
+    let mut roots: Vec<f64> = Vec::new();
+    for points in 1..=n {
+        let mut ends = vec![-1.0];
+        ends.extend(&roots);
+        ends.push(1.0);
+        roots = ends
+            .windows(2)
+            .map(|pair| bisect(pair[0], pair[1], |x| legendre(points, x)))
+            .collect();
+    }
+    let weight = |x: f64| 1.0 / (0..n).map(|k| (k as f64 + 0.5) * legendre(k, x).powi(2)).sum::<f64>();
+    roots.into_iter().map(|x| [x, weight(x)]).collect()
+}
+
 /// dy/dt = f(t, y) from `t0` to `t1` by the classical fourth-order Runge–Kutta rule in `steps` equal steps.
 pub fn runge_kutta<const N: usize>(
     t0: f64,

@@ -121,6 +121,11 @@ pub fn gallaway(first: bool, texture: f64, length: f64, rate: f64, slope: f64) -
     }
 }
 
+/// The rain rate at which that is 0, by halving its logarithm.
+pub fn gallaway_covering(first: bool, texture: f64, length: f64, slope: f64) -> f64 {
+    bisect(-40.0, 40.0, |rate| gallaway(first, texture, length, rate.exp(), slope)).exp()
+}
+
 /// Water behind a Green–Ampt front that started at `from` (mm), `hours` later under standing water. From
 /// K dt = F/(F + M) dF: with F = M (eˢ − 1) the integrand is M (eˢ − 1); by Simpson's rule, its inverse by halving.
 /// M = front, K in mm/h.
@@ -198,6 +203,15 @@ pub fn lekner_dorf(dry: f64, indices: [f64; 2], entry: f64) -> f64 {
     let a = a_d * ((1.0 - a_d) * gain + a_d);
     let p = 1.0 - (1.0 - mean_reflectance(liquid)) / (liquid * liquid);
     (1.0 - entry) * (1.0 - a / (1.0 - p * (1.0 - a)))
+}
+
+/// A soaked body as Lekner & Dorf print it, for coefficients `light` = [how much more the grains absorb in water, share
+/// that the water's surface returns] and the share `entry` of the light that never enters.
+pub fn soaked(dry: f64, light: [f64; 2], entry: f64) -> f64 {
+    let [gain, returned] = light;
+    let a_d = 1.0 - dry;
+    let absorbed = a_d * ((1.0 - a_d) * gain + a_d);
+    (1.0 - entry) * (1.0 - absorbed / (1.0 - returned * (1.0 - absorbed)))
 }
 
 /// Integral over the directions inside the water, cut where total reflection begins.

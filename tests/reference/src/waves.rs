@@ -2,7 +2,7 @@
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
-use crate::numerics::simpson;
+use crate::numerics::{bisect, simpson};
 
 const GRAVITY: f64 = 9.80665;
 const DENSITY: f64 = 998.2;
@@ -19,6 +19,36 @@ pub fn group_speed(k: f64, h: f64) -> f64 {
     let slope = |d: f64| (frequency(k + d, h) - frequency(k - d, h)) / (2.0 * d);
     let d = 1e-3 * k;
     (4.0 * slope(0.5 * d) - slope(d)) / 3.0
+}
+
+/// Speed of long waves: v² = g h, by halving. Units: m/s.
+pub fn shallow_speed(h: f64) -> f64 {
+    bisect(0.0, 1e3, |v| v * v - GRAVITY * h)
+}
+
+/// Speed and length of the slowest wave on deep water: gravity and tension give the same to ω². Units: m/s, m.
+pub fn slowest_wave() -> [f64; 2] {
+    let k = bisect(1.0, 1e4, |k| GRAVITY * k - TENSION * k.powi(3) / DENSITY);
+    [frequency(k, 1e4) / k, TAU / k]
+}
+
+/// The fewest equal steps of an interval with c dt/dx within `courant`, by counting up.
+pub fn fewest_steps(courant: f64, speed: f64, interval: f64, cell: f64) -> u32 {
+    let mut n = 1;
+    while speed * (interval / f64::from(n)) / cell > courant {
+        n += 1;
+    }
+    n
+}
+
+/// Largest change of the surface's velocity (h/ρ)∇²J of J = p e^(−r²/2s²)/(2πs²), by differences of J about the middle,
+/// extrapolated to no step. Units: SI.
+pub fn peak_velocity(momentum: f64, h: f64, s: f64) -> f64 {
+    let j = |r: f64| momentum * (-0.5 * (r / s).powi(2)).exp_m1() / (TAU * s * s);
+    // Four neighbours at d, less four times the middle: J(0) is left out of `j`.
+    let laplacian = |d: f64| 4.0 * j(d) / (d * d);
+    let d = 1e-2 * s;
+    (-h / DENSITY * (4.0 * laplacian(0.5 * d) - laplacian(d)) / 3.0).abs()
 }
 
 /// Decay rate of the amplitude: bulk and bottom. Units: 1/s.
@@ -117,6 +147,24 @@ pub fn packet(x: f64) -> [f64; 4] {
             2.0 * q.powi(2 * derivative + 2) * (-0.5 * kappa * kappa).exp() * (kappa * x + phase).cos()
         }) / TAU.sqrt()
     })
+}
+
+/// Largest |F′| and |F″| of the packet, by looking at every 1/64 of a width.
+pub fn steepest() -> [f64; 2] {
+    (-512..512)
+        .map(|i| packet(f64::from(i) / 64.0))
+        .fold([0.0, 0.0], |[a, b], row| [a.max(row[2].abs()), b.max(row[3].abs())])
+}
+
+/// Age from which (bump·|F′| + push·|F″|)/s · √(s/max(s, ct)) e^(−decay t) is below `slope`, by halving in [0, 1000] s.
+pub fn ring_lifetime(heights: [f64; 2], s: f64, c: f64, decay: f64, slope: f64) -> f64 {
+    let [bump, push] = steepest();
+    let start = (heights[0] * bump + heights[1].abs() * push) / s;
+    let steepness = |t: f64| start * (s / (c * t).max(s)).sqrt() * (-decay * t).exp();
+    if steepness(0.0) <= slope {
+        return 0.0;
+    }
+    bisect(0.0, 1e3, |t| slope - steepness(t))
 }
 
 /// ∫∫|∇u|² d²r dt of an impact of momentum p and volume v with width s on water of depth h, damping k_d: the transform

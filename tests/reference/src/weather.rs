@@ -3,7 +3,7 @@
 //! Right-hand sides with every limit as a branch, stepped by Runge and Kutta's rule. A step that ends in another branch
 //! than it began is cut in halves until it is shorter than a nanosecond: no event is ever solved for.
 
-use crate::numerics::bisect;
+use crate::numerics::{bisect, simpson};
 
 /// Shortest step: events are met to this. Units: s.
 const SHORTEST_S: f64 = 1e-9;
@@ -129,6 +129,37 @@ impl Ground {
         y
     }
 
+    /// What the dry soil takes in `t` s under standing water: sums of the capacity over spans short against its decay.
+    /// Units: mm.
+    pub fn flooded_mm(&self, t: f64) -> f64 {
+        let spans = (self.decay_per_h * t / 3600.0).ceil().clamp(1.0, 1e4);
+        let edge = |i: f64| t * i / spans;
+        let mut sum = 0.0;
+        let mut i = spans;
+        // From the end: small amounts first.
+        while i > 0.0 {
+            sum += simpson(edge(i - 1.0), edge(i), 300, |tau| self.capacity_mm_s(tau));
+            i -= 1.0;
+        }
+        sum
+    }
+
+    /// When constant rain on the dry soil begins to stand: what the curve let in until its capacity was down to the rain,
+    /// over the rain. Units: s.
+    pub fn ponded_after_s(&self, rain_mm_h: f64) -> f64 {
+        let tau = bisect(0.0, 40.0 * 3600.0 / self.decay_per_h, |tau| {
+            self.capacity_mm_s(tau) * 3600.0 - rain_mm_h
+        });
+        self.flooded_mm(tau) / (rain_mm_h / 3600.0)
+    }
+
+    /// κ of the drain κ w^(5/3), w in mm: Manning's law over a plane. Units: mm^(−2/3)/s.
+    pub fn drain(&self) -> f64 {
+        let si = self.slope.sqrt() / self.manning_n / self.length_m;
+        // 1e3 mm a metre: w in mm is 1e-3 w in m.
+        1e3 * si * 1e-3_f64.powf(5.0 / 3.0)
+    }
+
     /// When constant rain on the dry soil begins to stand. Units: s. By stepping Horton's time with what infiltrates.
     pub fn ponding_time_s(&self, rain_mm_h: f64, h: f64) -> f64 {
         let rain = rain_mm_h / 3600.0;
@@ -223,6 +254,19 @@ impl Artist {
     }
 }
 
+/// The rows of digest C, table 4.2, joined by lines: 0, 2, 5, 10 mm/h are 0, 0.33, 0.66, 1.
+pub fn relative_intensity(rain_mm_h: f64) -> f64 {
+    if rain_mm_h <= 2.0 {
+        0.165 * rain_mm_h
+    } else if rain_mm_h <= 5.0 {
+        0.11 + 0.11 * rain_mm_h
+    } else if rain_mm_h <= 10.0 {
+        0.32 + 0.068 * rain_mm_h
+    } else {
+        1.0
+    }
+}
+
 /// Saturation vapour pressure over water. Units: °C in, hPa out. Bolton 1980 as printed.
 pub fn saturation_hpa(t: f64) -> f64 {
     6.112 * (17.67 * t / (t + 243.5)).exp()
@@ -247,6 +291,23 @@ pub fn dalton_mm_day(t: f64, humidity: f64, wind: f64) -> f64 {
 /// Dew point by halving. Units: °C.
 pub fn dew_point_c(t: f64, humidity: f64) -> f64 {
     bisect(-200.0, t, |x| saturation_hpa(x) - humidity * saturation_hpa(t))
+}
+
+/// Value at `t` of a function that is linear (or held) between keys `(time, value, held)`, from the right.
+pub fn value_along(keys: &[(f64, f64, bool)], t: f64) -> f64 {
+    let mut value = keys[0].1;
+    for (i, key) in keys.iter().enumerate() {
+        if key.0 <= t {
+            value = match keys.get(i + 1) {
+                Some(next) if !key.2 => {
+                    let share = (t - key.0) / (next.0 - key.0);
+                    key.1 - share * key.1 + share * next.1
+                }
+                _ => key.1,
+            };
+        }
+    }
+    value
 }
 
 /// Mean over [a, b] of a function that is linear (or held) between keys `(time, value, held)`: sums of trapezia between

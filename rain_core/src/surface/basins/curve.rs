@@ -80,6 +80,8 @@ impl Curve<'_> {
     /// Depth of water above the lowest cell. Units: m. Volumes (m³) below that of the basins inside give the sill,
     /// above the capacity the spill level; NaN counts as none. Where it cannot overflow, volumes above 1e30 m³ count as
     /// that.
+    ///
+    /// Error: 1e-12 of the depth against a sum over all cells.
     #[must_use]
     pub fn depth_m(&self, volume_m3: f64) -> f64 {
         let volume_m3 = clamped(volume_m3, 0.0, MOST);
@@ -88,6 +90,8 @@ impl Curve<'_> {
 
     /// Water at a depth above the lowest cell. Units: m³. Depths (m) outside the sill and spill level count as these,
     /// NaN as the sill. Where it cannot overflow, depths above 1e30 m count as that.
+    ///
+    /// Error: 1e-12 relative against a sum over all cells.
     #[must_use]
     pub fn volume_m3(&self, depth_m: f64) -> f64 {
         let depth_m = clamped(depth_m, 0.0, MOST);
@@ -103,7 +107,7 @@ impl Curve<'_> {
         }
     }
 
-    /// Wet area at a volume, just above where it jumps. Units: m².
+    /// Wet area at a volume, just above where it jumps. Units: m². Error: none, cells are counted.
     #[must_use]
     pub fn area_m2(&self, volume_m3: f64) -> f64 {
         self.area_in(self.stretch_at(volume_m3))

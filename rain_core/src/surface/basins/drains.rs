@@ -26,7 +26,8 @@ pub enum Inlet {
 
 impl Inlet {
     /// Flow at a depth over the inlet. Units: m³/s (depth m). Nothing at depth 0 or below or NaN. A hole takes what
-    /// comes: 0 here, since no water stands over it.
+    /// comes: 0 here, since no water stands over it. Error: 1e-14 relative; in a running basin 4e-5 above 10 mm, 5e-3 in the
+    /// stretch of a few tenths of a mm where a grate's two laws meet.
     #[must_use]
     pub fn flow_m3_s(&self, depth_m: f64) -> f64 {
         match *self {
@@ -78,8 +79,9 @@ pub struct BasinDrain {
 }
 
 impl BasinDrain {
-    /// Flow when the level (m) is `depth` above its own, tabulated: linear between knots at j² · 1 µm, within 3e-5 of
-    /// [`Inlet::flow_m3_s`] above 10 mm (0.4/j² of it at knot j).
+    /// Flow when the level (m) is `depth` above its own, tabulated: linear between knots at j² · 1 µm, within 4e-5 of
+    /// [`Inlet::flow_m3_s`] above 10 mm (0.4/j² of it at knot j) but in the one stretch where weir and orifice meet,
+    /// where the tip is cut off: up to 0.5/j, 5e-3 above 10 mm.
     pub(super) fn flow(&self, depth: f64) -> f64 {
         match self.inlet {
             Inlet::Grate(_) if depth > 0.0 => {
@@ -145,4 +147,59 @@ fn knot_below(depth: f64) -> f64 {
         knot += 1.0;
     }
     knot
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tabulated_inlets_stay_near_their_law_and_bend_only_at_their_knots() {
+        for (perimeter_m, area_m2) in [(1.2, 0.05), (0.3, 2.0), (40.0, 0.01)] {
+            let drain = BasinDrain {
+                leaf: 0,
+                level_m: 0.0,
+                inlet: Inlet::Grate(Grate { perimeter_m, area_m2 }),
+            };
+            let meeting = Grate { perimeter_m, area_m2 }.transition_depth_m();
+            let (mut worst, mut cut, mut bent, mut compared) = (0.0_f64, 0.0_f64, 0.0_f64, 0);
+            let mut depth = 0.01;
+            while depth < 100.0 {
+                let law = drain.inlet.flow_m3_s(depth);
+                let off = (drain.flow(depth) / law - 1.0).abs();
+                if knot_below(depth) == knot_below(meeting) {
+                    assert!(off < 0.5 / knot_below(depth), "{depth}: {off}");
+                    cut = cut.max(off);
+                } else {
+                    worst = worst.max(off);
+                }
+                bent = bent.max((drain.flow(1.05 * depth) / law - 1.0).abs());
+                // At a knot it is the law itself.
+                let knot = drain.next_knot(0.0, depth);
+                assert!(knot > depth && drain.previous_knot(0.0, knot) <= depth);
+                assert!((drain.flow(knot) / drain.inlet.flow_m3_s(knot) - 1.0).abs() < 1e-14);
+                depth *= 1.000_7;
+                compared += 1;
+            }
+            assert!(worst < 4e-5 && cut < 5e-3, "{perimeter_m} {area_m2}: {worst} {cut}");
+            assert!(compared > 10_000 && bent > 0.02, "a depth 5 % off goes unseen");
+            for knot in 2..100_u32 {
+                let j = f64::from(knot);
+                if j == knot_below(meeting) {
+                    continue;
+                }
+                let middle = 0.5 * (knot_depth(j) + knot_depth(j + 1.0));
+                let off = (drain.flow(middle) / drain.inlet.flow_m3_s(middle) - 1.0).abs();
+                assert!(off < 0.4 / (j * j), "knot {knot}: {off}");
+            }
+        }
+        for depth in [f64::NAN, f64::NEG_INFINITY, -1.0, 0.0] {
+            let hole = BasinDrain {
+                leaf: 0,
+                level_m: 0.0,
+                inlet: Inlet::Hole,
+            };
+            assert_eq!(hole.flow(depth), 0.0);
+        }
+    }
 }

@@ -54,6 +54,7 @@ fn sheet_flow_has_its_check_values() {
 fn sheet_flow_is_the_implicit_equation_over_its_domain() {
     let (mut steady, mut flux) = (Worst::default(), Worst::default());
     let (mut falling, mut wrong) = (Worst::default(), Worst::default());
+    let (mut settling, mut passing) = (Worst::default(), Worst::default());
     for rain in log_spaced(1e-3, 1e4, 6) {
         for slope in [1e-6, 1e-3, 0.05, 10.0] {
             for resistance in log_spaced(1e-3, 10.0, 4) {
@@ -72,6 +73,8 @@ fn sheet_flow_is_the_implicit_equation_over_its_domain() {
                     for (flow, plane) in planes {
                         let h = plane.steady(x);
                         steady.relative(flow.steady_depth_m(x), h, 0.0, || format!("{flow:?} {x}"));
+                        let whole = plane.steady(1e4) / plane.rain;
+                        settling.relative(flow.equilibrium_time_s(), whole, 0.0, || format!("{flow:?}"));
                         if h < 1e3 {
                             flux.relative(flow.discharge_m2_s(h), plane.rain * x, 0.0, || format!("{flow:?} {x}"));
                         }
@@ -82,6 +85,14 @@ fn sheet_flow_is_the_implicit_equation_over_its_domain() {
                                 format!("{flow:?} {x} {share}")
                             });
                             wrong.relative(1.05 * flow.recession_depth_m(x, t), depth, 0.0, String::new);
+                            // While it rains, after long rain, after rain too short for the steady depth.
+                            let place = || format!("{flow:?} {x} {share}");
+                            let risen = h.min(plane.rain * t);
+                            passing.relative(flow.rising_depth_m(x, t), risen, 0.0, place);
+                            passing.relative(flow.depth_m(x, t, 2.0 * t), risen, 0.0, place);
+                            let kept = (0.1 * h).min(depth);
+                            let short = 0.1 * h / plane.rain;
+                            passing.relative(flow.depth_m(x, short + t, short), kept, 0.0, place);
                         }
                     }
                 }
@@ -91,6 +102,8 @@ fn sheet_flow_is_the_implicit_equation_over_its_domain() {
     steady.assert_below(2e-15, 500);
     flux.assert_below(1e-14, 500);
     falling.assert_below(1e-14, 5000);
+    settling.assert_below(2e-15, 500);
+    passing.assert_below(1e-14, 15_000);
     assert!(wrong.error > 0.04, "a depth 5 % off goes unseen");
 }
 
@@ -422,6 +435,9 @@ proptest! {
         prop_assert!(film_step(h, rain, 1.1 * drain, dt) <= after);
         let cut = drained_film(drained_film(h, drain, 0.3 * dt), drain, 0.7 * dt);
         prop_assert!((cut - drained_film(h, drain, dt)).abs() <= 1e-14 * cut);
+        prop_assert_eq!(film_step(h, 0.0, drain, dt), drained_film(h, drain, dt), "no rain");
+        let filled = h + rain * dt;
+        prop_assert!((film_step(h, rain, 0.0, dt) - filled).abs() <= 1e-15 * filled, "no drain");
     }
 }
 
@@ -458,10 +474,18 @@ fn the_road_film_has_its_check_values() {
 
 #[test]
 fn the_road_film_is_the_regression_over_its_domain() {
-    let (mut worst, mut wrong) = (Worst::default(), Worst::default());
+    let (mut worst, mut covering, mut wrong) = (Worst::default(), Worst::default(), Worst::default());
     for texture in log_spaced(0.01, 10.0, 5) {
         for length in log_spaced(0.1, 1e3, 5) {
             for slope in log_spaced(1e-4, 1.0, 5) {
+                for fit in [RoadFilmFit::Gallaway1971, RoadFilmFit::Gallaway1979] {
+                    let found = road(texture, length, slope)
+                        .covering_intensity_mm_h(fit)
+                        .expect("valid");
+                    let first = fit == RoadFilmFit::Gallaway1971;
+                    let exact = truth::gallaway_covering(first, texture, length, slope);
+                    covering.relative(found, exact, 0.0, || format!("{texture} {length} {slope}"));
+                }
                 for rain in log_spaced(1e-3, 500.0, 5).chain([0.0]) {
                     for fit in [RoadFilmFit::Gallaway1971, RoadFilmFit::Gallaway1979] {
                         let first = fit == RoadFilmFit::Gallaway1971;
@@ -480,6 +504,7 @@ fn the_road_film_is_the_regression_over_its_domain() {
         }
     }
     worst.assert_below(5e-15, 1000);
+    covering.assert_below(1e-13, 200);
     assert!(wrong.error > 0.01, "a slope 5 % off goes unseen");
 }
 

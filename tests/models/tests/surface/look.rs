@@ -11,7 +11,7 @@ use rain_core::surface::{
 };
 use rain_reference::surface as truth;
 
-use super::{ANY, config};
+use super::{ANY, config, log_spaced};
 use crate::check::Worst;
 
 const INDICES: [f64; 2] = [1.333, 1.55];
@@ -142,6 +142,70 @@ fn constant_factors_of_the_sources_are_far_from_it() {
     };
     assert!((lagarde_wet(look(0.1), 1.0).albedo - wet_albedo(0.1)).abs() > 0.02);
     assert!((lagarde_wet(look(0.95), 1.0).albedo - wet_albedo(0.95)).abs() > 0.59);
+    let mut worst = Worst::default();
+    for i in 0..=1000 {
+        let dry = f64::from(i) / 1000.0;
+        worst.absolute(lagarde_wet(look(dry), 1.0).albedo, wet_albedo(dry), || format!("{dry}"));
+    }
+    worst.assert_below(0.68, 1000);
+    assert!(worst.error > 0.679, "{worst:?}");
+}
+
+#[test]
+fn albedos_are_the_formula_in_every_light_and_at_every_saturation() {
+    let (mut exact, mut damp, mut single, mut wrong) =
+        (Worst::default(), Worst::default(), Worst::default(), Worst::default());
+    let shares = (0..=100).map(|i| f64::from(i) / 100.0);
+    for body in [WetBody::LEKNER_DORF, WetBody::ANGSTROM, WetBody::UNDER_SKY] {
+        let light = [body.index_gain, body.internal_reflectance];
+        for dry in shares.clone() {
+            let place = || format!("{body:?} {dry}");
+            exact.absolute(
+                body.albedo(dry),
+                truth::soaked(dry, light, body.entry_reflectance),
+                place,
+            );
+            single.absolute(
+                f64::from(body.albedo_f32(dry as f32)),
+                body.albedo(f64::from(dry as f32)),
+                place,
+            );
+            for cos in shares.clone() {
+                let reference = truth::soaked(dry, light, truth::fresnel(cos, 1.333));
+                exact.absolute(body.albedo_at(dry, cos), reference, || format!("{body:?} {dry} {cos}"));
+                wrong.absolute(body.albedo_at(1.05 * dry, cos), reference, String::new);
+            }
+        }
+    }
+    let light = [
+        WetBody::LEKNER_DORF.index_gain,
+        WetBody::LEKNER_DORF.internal_reflectance,
+    ];
+    for dry in shares.clone() {
+        let soaked = truth::soaked(dry, light, WATER_F0);
+        let [_, green, _] = wet_albedo_rgb([0.3, dry as f32, 0.9]);
+        single.absolute(f64::from(green), wet_albedo(f64::from(dry as f32)), || {
+            format!("rgb {dry}")
+        });
+        assert_eq!(
+            wet_albedo_rgb([0.3, dry as f32, 0.9]),
+            [0.3, dry as f32, 0.9].map(wet_albedo_f32)
+        );
+        for w in shares.clone() {
+            let place = || format!("{dry} {w}");
+            damp.absolute(saturated_albedo(dry, w), (1.0 - w) * dry + w * soaked, place);
+            let (dry32, w32) = (dry as f32, w as f32);
+            single.absolute(
+                f64::from(saturated_albedo_f32(dry32, w32)),
+                saturated_albedo(f64::from(dry32), f64::from(w32)),
+                place,
+            );
+        }
+    }
+    exact.assert_below(2e-15, 30_000);
+    damp.assert_below(2e-15, 10_000);
+    single.assert_below(3e-7, 10_000);
+    assert!(wrong.error > 0.01, "an albedo 5 % off goes unseen");
 }
 
 #[test]
@@ -187,6 +251,23 @@ fn water_absorbs_nearly_as_the_integral_over_all_directions() {
     assert!((dark[0] - light[0]).abs() < 1e-9 && dark[0] > dark[1] && dark[1] > dark[2]);
     let way = Water::CLEAR.transmittance(2.0);
     assert!((way[0] - (-0.68_f64).exp()).abs() < 1e-15 && way[2] > way[1] && way[1] > way[0]);
+    let mut worst = Worst::default();
+    for absorption in [0.0, 0.34, 12.0, 1e4] {
+        for turbidity_per_m in [0.0, 40.0, 1e4] {
+            let water = Water {
+                absorption_per_m: [absorption, 0.5 * absorption, 0.0],
+                turbidity_per_m,
+                ..Water::CLEAR
+            };
+            for way in log_spaced(1e-9, 1e9, 200) {
+                for (found, absorption) in water.transmittance(way).into_iter().zip(water.absorption_per_m) {
+                    let exact = (-absorption * way - turbidity_per_m * way).exp();
+                    worst.absolute(found, exact, || format!("{absorption} {turbidity_per_m} {way}"));
+                }
+            }
+        }
+    }
+    worst.assert_below(1e-15, 7000);
 }
 
 #[test]
@@ -306,20 +387,32 @@ fn the_four_states_follow_pores_and_film() {
         let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     };
-    let mut worst = Worst::default();
-    for i in 0..=300 {
-        let h = f64::from(i) / 200.0;
-        let s = weights(0.7, h);
-        worst.absolute(s.puddle, ramp(0.8, 1.2, h), || format!("{h}"));
-        worst.absolute(s.covered(), ramp(0.0, 1.0, h), || format!("{h}"));
-        worst.absolute(s.wet, 0.7 * (1.0 - ramp(0.0, 1.0, h)), || format!("{h}"));
-        worst.absolute(
-            film_roughness(0.6, 0.04, h, 1.0),
-            0.6 - 0.56 * ramp(0.0, 1.0, h),
-            || format!("{h}"),
-        );
+    let (mut worst, mut wrong) = (Worst::default(), Worst::default());
+    for texture in [0.0, 0.004, 0.01, 0.8, 1.0, 37.0, 1000.0] {
+        // The least texture that a weight sees; the roughness sees any.
+        let t = f64::max(texture, 0.01);
+        for i in 0..=300 {
+            let h = t * f64::from(i) / 200.0;
+            for w in [0.0, 0.1, 0.7, 1.0] {
+                let s = SurfaceWeights::new(w, h, texture).expect("valid");
+                let (covered, puddle) = (ramp(0.0, t, h), ramp(0.8 * t, 1.2 * t, h));
+                for (found, exact) in [
+                    (s.puddle, puddle),
+                    (s.covered(), covered),
+                    (s.drenched, covered - puddle),
+                    (s.wet, w * (1.0 - covered)),
+                    (s.dry, (1.0 - w) * (1.0 - covered)),
+                    (film_roughness(0.6, w, h, t), 0.6 - (0.6 - w) * covered),
+                ] {
+                    worst.absolute(found, exact, || format!("{w} {h} {texture}"));
+                }
+                let off = SurfaceWeights::new(w, 1.05 * h, texture).expect("valid");
+                wrong.absolute(off.puddle, puddle, String::new);
+            }
+        }
     }
-    worst.assert_below(3e-16, 1200);
+    assert!(wrong.error > 0.05, "a film 5 % off goes unseen");
+    worst.assert_below(3e-16, 40_000);
 }
 
 #[test]
@@ -335,111 +428,29 @@ fn water_is_smooth_and_waves_widen_it() {
     // α² + 2⟨s²⟩: rings of 0.1 slope variance widen a mirror to 0.45.
     assert!((widened_roughness(0.04, 0.1) - (0.04_f64 * 0.04 + 0.2).sqrt()).abs() < 3e-16);
     assert_eq!((widened_roughness(0.3, 0.0), widened_roughness(0.3, 9.0)), (0.3, 1.0));
-    let mut worst = Worst::default();
-    for i in 0..=1000 {
-        let h = f64::from(i as f32 / 700.0);
-        worst.absolute(
-            f64::from(film_roughness_f32(0.6, 0.04, h as f32, 0.8)),
-            film_roughness(f64::from(0.6_f32), f64::from(0.04_f32), h, f64::from(0.8_f32)),
-            || format!("{h}"),
-        );
+    let (mut single, mut widened, mut wrong) = (Worst::default(), Worst::default(), Worst::default());
+    for texture in [0.0_f32, 0.01, 0.8, 37.0, 1e3] {
+        for i in 0..=1000_u16 {
+            let h = texture.max(0.01) * f32::from(i) / 700.0;
+            for (dry, water) in [(0.6_f32, 0.04_f32), (0.0, 1.0), (1.0, 0.0), (0.3, 0.3)] {
+                let exact = film_roughness(dry.into(), water.into(), h.into(), texture.into());
+                single.absolute(f64::from(film_roughness_f32(dry, water, h, texture)), exact, || {
+                    format!("{dry} {water} {h} {texture}")
+                });
+            }
+        }
     }
-    worst.assert_below(2e-7, 1000);
-}
-
-#[test]
-fn the_sources_looks_have_their_check_values() {
-    // Nguyenova: wetness 0, 0.5, 1 gives the factors 1, 0.65, 0.3 and smoothness 0.3 → 0.3, 0.525, 0.75; 0.5 → 1.
-    for (w, factor, gloss) in [(0.0, 1.0, 0.3), (0.5, 0.65, 0.525), (1.0, 0.3, 0.75)] {
-        let wet = lagarde_wet(
-            ArtistLook {
-                albedo: 0.5,
-                gloss: 0.3,
-                f0: 0.04,
-            },
-            w,
-        );
-        assert!((wet.albedo - 0.5 * factor).abs() < 1e-15 && (wet.gloss - gloss).abs() < 1e-15);
+    single.assert_below(2e-7, 20_000);
+    for i in 0..=100 {
+        let a = f64::from(i) / 100.0;
+        for slopes in log_spaced(1e-12, 1e6, 100).chain([0.0]) {
+            let exact = f64::hypot(a, (2.0 * slopes).sqrt()).min(1.0);
+            widened.absolute(widened_roughness(a, slopes), exact, || format!("{a} {slopes}"));
+            wrong.absolute(widened_roughness(a, 1.05 * slopes), exact, String::new);
+        }
     }
-    let mirror = lagarde_wet(
-        ArtistLook {
-            albedo: 0.5,
-            gloss: 0.5,
-            f0: 0.04,
-        },
-        1.0,
-    );
-    assert_eq!(mirror.gloss, 1.0);
-    // Blended map 0.4, level 0.7: p = 0.3, factor 0.94, smoothness 0.5 → 0.65, 3 mm; level 0.3: nothing.
-    let p = nguyenova_puddle_amount(0.7, 0.4);
-    assert!((p - 0.3).abs() < 1e-15 && (nguyenova_puddle_depth_mm(p) - 3.0).abs() < 1e-14);
-    let under = nguyenova_puddle(
-        ArtistLook {
-            albedo: 1.0,
-            gloss: 0.5,
-            f0: 0.04,
-        },
-        p,
-    );
-    assert!((under.albedo - 0.94).abs() < 1e-15 && (under.gloss - 0.65).abs() < 1e-15);
-    assert_eq!(nguyenova_puddle_amount(0.3, 0.4), 0.0);
-    // Share of independent uniform maps under a level L: 1 − c + c ln c, c = 1 − L.
-    for (level, share) in [(0.25, 0.034), (0.5, 0.153), (0.75, 0.403), (0.9, 0.670)] {
-        let n = 400;
-        let under = (0..n * n)
-            .filter(|i| {
-                let (a, b) = (
-                    (f64::from(i % n) + 0.5) / f64::from(n),
-                    (f64::from(i / n) + 0.5) / f64::from(n),
-                );
-                screen_blend(a, b) < level
-            })
-            .count();
-        let found = under as f64 / f64::from(n * n);
-        assert!((found - share).abs() < 1e-3, "{level}: {found}");
-    }
-    // Lagarde.
-    assert!((painted_puddle_water(0.5, 0.3, 0.4) - 0.5).abs() < 1e-15);
-    assert!(painted_puddle_water(0.7, 0.3, 0.4) > 1.0 - 1e-15 && painted_puddle_water(0.3, 0.3, 0.4) == 0.0);
-    assert!((crack_water(0.5, 0.8) - 0.2).abs() < 1e-15 && crack_water(1.0, 0.0) == 1.0);
-    assert_eq!(crack_water(1.0, 1.0), 0.0, "white never floods");
-    assert_eq!(accumulated_water(0.2, 0.5), 0.5);
-    assert_eq!(
-        (effective_wetness(0.0, 1.0, 0.3), effective_wetness(0.9, 1.0, 0.3)),
-        (0.3, 1.0)
-    );
-    assert_eq!(effective_wetness(1.0, 0.0, 0.0), 0.0, "sheltered");
-    let puddle = ArtistLook {
-        albedo: 0.2,
-        gloss: 0.5,
-        f0: 0.04,
-    }
-    .flooded(1.0);
-    assert_eq!((puddle.gloss, puddle.f0, puddle.albedo), (1.0, 0.02, 0.2));
-    let margin = ArtistLook {
-        albedo: 0.2,
-        gloss: 0.5,
-        f0: 0.04,
-    }
-    .flooded(0.5);
-    assert!((margin.gloss - 0.75).abs() < 1e-15 && (margin.f0 - 0.03).abs() < 1e-15);
-    // Porosity: gloss 0.1 is porous, 0.5 is not, metals never are.
-    assert_eq!(
-        (
-            lagarde_porosity(0.1, 0.0),
-            lagarde_porosity(0.5, 0.0),
-            lagarde_porosity(0.1, 1.0)
-        ),
-        (1.0, 0.0, 0.0)
-    );
-    let rough = ArtistLook {
-        albedo: 0.5,
-        gloss: 0.2,
-        f0: 0.04,
-    };
-    let soaked = lagarde_porous_wet(rough, 1.0, 1.0);
-    assert!((soaked.albedo - 0.1).abs() < 1e-15 && (soaked.gloss - (1.0 - 0.8 * 0.6)).abs() < 1e-15);
-    assert_eq!(lagarde_porous_wet(rough, 0.0, 1.0), rough, "what is not porous stays");
+    widened.assert_below(3e-16, 10_000);
+    assert!(wrong.error > 0.01, "slopes 5 % off go unseen");
 }
 
 proptest! {
@@ -454,6 +465,10 @@ proptest! {
         // Relative darkening is stronger for darker bodies (C29).
         prop_assert!(wet_albedo(low) * high <= wet_albedo(high) * low + 1e-15);
         prop_assert!(saturated_albedo(a, w.max(v)) <= saturated_albedo(a, w.min(v)));
+        prop_assert!(widened_roughness(low, w) <= widened_roughness(high, w) && widened_roughness(a, w) >= a);
+        prop_assert!(widened_roughness(a, w.min(v)) <= widened_roughness(a, w.max(v)));
+        let [r, _, b] = wet_albedo_rgb([low as f32, 0.5, high as f32]);
+        prop_assert!(r <= b && r <= low as f32 + 1e-7);
         let single = f64::from(saturated_albedo_f32(a as f32, w as f32));
         prop_assert!((single - saturated_albedo(f64::from(a as f32), f64::from(w as f32))).abs() < 3e-7);
     }

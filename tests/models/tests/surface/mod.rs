@@ -1,5 +1,6 @@
 //! Film, road film, infiltration, inlets, puddles, states and looks of wet surfaces.
 
+mod artist;
 mod flow;
 mod ground;
 mod look;

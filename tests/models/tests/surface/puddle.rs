@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use rain_core::surface::ParaboloidPuddle;
 use rain_reference::surface as truth;
 
-use super::{ANY, config};
+use super::{ANY, config, log_spaced};
 use crate::check::Worst;
 
 const MM_H: f64 = 1.0 / 3.6e6;
@@ -34,6 +34,38 @@ fn a_lone_puddle_has_its_check_values() {
     assert!((ParaboloidPuddle::drying_time_s(5e-3, e).expect("dries") - 6000.0).abs() < 1e-9);
     assert!((p.level_after_m(5e-3, 0.0, e, 3000.0) - 2.5e-3).abs() < 1e-16);
     assert_eq!(p.level_after_m(5e-3, 0.0, e, 6001.0), 0.0);
+}
+
+#[test]
+fn a_lone_puddle_is_a_paraboloid() {
+    let (mut worst, mut wrong) = (Worst::default(), Worst::default());
+    for radius in log_spaced(1e-3, 1e9, 25) {
+        let p = hollow(radius);
+        for level in log_spaced(1e-9, 1e3, 25) {
+            let place = || format!("{radius} {level}");
+            // Of a circle whose edge lies at r² = 2 R h the paraboloid holds half the cylinder.
+            let area = std::f64::consts::PI * (2.0 * radius * level);
+            let volume = 0.5 * area * level;
+            worst.relative(p.area_m2(level), area, 0.0, place);
+            worst.relative(p.volume_m3(level), volume, 0.0, place);
+            if volume <= 1e15 {
+                worst.relative(p.level_m(volume), level, 0.0, place);
+            }
+            wrong.relative(p.volume_m3(1.05 * level), volume, 0.0, String::new);
+            for loss in log_spaced(1e-12, 1.0, 7) {
+                // A loss that takes from this area what flows in.
+                let inflow = loss * area;
+                if inflow <= 1e6 {
+                    let balance = p.balance_level_m(inflow, loss).expect("loses");
+                    worst.relative(balance, level, 0.0, || format!("{radius} {level} {loss}"));
+                }
+                let dry = ParaboloidPuddle::drying_time_s(level, loss).expect("dries");
+                worst.relative(dry, level / loss, 0.0, place);
+            }
+        }
+    }
+    worst.assert_below(1e-15, 5000);
+    assert!(wrong.error > 0.05, "a level 5 % off goes unseen");
 }
 
 #[test]

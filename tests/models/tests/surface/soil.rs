@@ -75,24 +75,53 @@ fn the_front_is_the_integral_over_its_domain() {
 
 #[test]
 fn the_front_solves_its_own_equation() {
-    let mut worst = Worst::default();
+    // F − M ln(1 + F/M) by its series where it cancels.
+    let left = |m: f64, f: f64| {
+        let x = f / m;
+        if x < 1e-3 {
+            m * x * x * (0.5 - x * (1.0 / 3.0 - x * (0.25 - x * (0.2 - x / 6.0))))
+        } else {
+            f - m * x.ln_1p()
+        }
+    };
+    let (mut worst, mut further, mut rained) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut closed, mut wrong) = (Worst::default(), Worst::default());
     for hours in log_spaced(1e-12, 1e6, 200) {
         for texture in SoilTexture::ALL {
             let soil = texture.soil(0.3).expect("valid");
-            let (m, f) = (soil.front_mm(), soil.flooded_mm(hours));
-            let x = f / m;
-            // F − M ln(1 + F/M) by its series where it cancels.
-            let left = if x < 1e-3 {
-                m * x * x * (0.5 - x * (1.0 / 3.0 - x * (0.25 - x * (0.2 - x / 6.0))))
-            } else {
-                f - m * x.ln_1p()
-            };
-            worst.relative(left, soil.conductivity_mm_h * hours, 0.0, || {
-                format!("{texture:?} {hours}")
-            });
+            let (m, k) = (soil.front_mm(), soil.conductivity_mm_h);
+            let place = || format!("{texture:?} {hours}");
+            let f = soil.flooded_mm(hours);
+            worst.relative(left(m, f), k * hours, 0.0, place);
+            wrong.relative(left(m, 1.05 * f), k * hours, 0.0, place);
+            closed.relative(soil.capacity_mm_h(f), k + k * m / f, 0.0, place);
+            for state in [1e-3 * m, m, 50.0 * m] {
+                let gone = left(m, state);
+                further.relative(
+                    left(m, soil.flooded_from_mm(state, hours)),
+                    gone + k * hours,
+                    0.0,
+                    place,
+                );
+            }
+            for excess in [1.001, 1.5, 20.0, 1e3] {
+                let rain = excess * k;
+                let ponds = k * m / (rain * (rain - k));
+                closed.relative(soil.ponding_time_h(rain).expect("ponds"), ponds, 0.0, place);
+                let f = soil.infiltrated_mm(0.0, rain, hours);
+                if hours <= ponds {
+                    rained.relative(f, rain * hours, 0.0, place);
+                } else {
+                    rained.relative(left(m, f), left(m, rain * ponds) + k * (hours - ponds), 0.0, place);
+                }
+            }
         }
     }
     worst.assert_below(1e-12, 1000);
+    further.assert_below(1e-12, 3000);
+    rained.assert_below(1e-12, 4000);
+    closed.assert_below(1e-15, 5000);
+    assert!(wrong.error > 0.04, "a depth 5 % off goes unseen");
 }
 
 #[test]
@@ -199,12 +228,36 @@ fn inlets_have_their_check_values_and_the_smaller_law_counts() {
     let turn = GULLY.transition_depth_m();
     assert!((GULLY.weir_m3_s(turn) / GULLY.orifice_m3_s(turn) - 1.0).abs() < 1e-14);
     let (mut worst, mut wrong) = (Worst::default(), Worst::default());
-    for depth in log_spaced(1e-12, 100.0, 100) {
-        let q = truth::inlet(1.2, 0.05, depth);
-        worst.relative(GULLY.capacity_m3_s(depth), q, 0.0, || format!("{depth}"));
-        wrong.relative(GULLY.capacity_m3_s(1.05 * depth), q, 0.0, String::new);
+    for (perimeter_m, area_m2) in [
+        (1.2, 0.05),
+        (1e-6, 1e3),
+        (1e3, 1e-6),
+        (37.0, 900.0),
+        (0.0, 0.1),
+        (0.1, 0.0),
+    ] {
+        let grate = Grate { perimeter_m, area_m2 };
+        let place = || format!("{grate:?}");
+        for depth in log_spaced(1e-12, 100.0, 100) {
+            let q = truth::inlet(perimeter_m, area_m2, depth);
+            worst.relative(grate.capacity_m3_s(depth), q, 1e-300, place);
+            // Either law alone: the other one has no say over a width or an area without end.
+            let [weir, orifice] = [
+                truth::inlet(perimeter_m, 1e30, depth),
+                truth::inlet(1e30, area_m2, depth),
+            ];
+            worst.relative(grate.weir_m3_s(depth), weir, 1e-300, place);
+            worst.relative(grate.orifice_m3_s(depth), orifice, 1e-300, place);
+            wrong.relative(grate.capacity_m3_s(1.05 * depth), q, 1e-300, place);
+        }
+        if perimeter_m > 0.0 {
+            let turn = 0.67 / 1.66 * area_m2 / perimeter_m * (2.0 * 9.806_65_f64).sqrt();
+            worst.relative(grate.transition_depth_m(), turn, 1e-300, place);
+        } else {
+            assert_eq!(grate.transition_depth_m(), f64::INFINITY);
+        }
     }
-    worst.assert_below(1e-15, 100);
+    worst.assert_below(1e-15, 1800);
     assert!(wrong.error > 0.02, "a depth 5 % off goes unseen");
 }
 

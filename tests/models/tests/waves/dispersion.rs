@@ -61,8 +61,26 @@ fn the_slowest_wave_is_17_mm_long() {
 }
 
 #[test]
+fn the_slowest_wave_is_where_gravity_and_tension_pull_alike() {
+    let (speed, length) = minimum_phase_speed();
+    let (mut worst, mut wrong) = (Worst::default(), Worst::default());
+    let [exact_speed, exact_length] = truth::slowest_wave();
+    worst.relative(speed, exact_speed, 0.0, || "speed".into());
+    worst.relative(length, exact_length, 0.0, || "length".into());
+    worst.assert_below(1e-14, 2);
+    wrong.relative(1.05 * speed, exact_speed, 0.0, String::new);
+    assert!(wrong.error > 0.04);
+    // On deep water no wave of any length is slower; on water thinner than that length the longest are.
+    for (k, _) in grid() {
+        assert!(phase_speed(k, 100.0) >= speed * (1.0 - 1e-15), "{k}");
+    }
+    assert!(phase_speed(0.0, 0.004) < speed);
+}
+
+#[test]
 fn speeds_are_those_of_the_dispersion_relation() {
     let [mut frequency, mut group, mut single, mut single_group] = [(); 4].map(|()| Worst::default());
+    let [mut shallow, mut single_shallow] = [(); 2].map(|()| Worst::default());
     for (k, h) in grid() {
         let exact = truth::frequency(k, h);
         let place = || format!("k {k}, h {h}");
@@ -88,11 +106,14 @@ fn speeds_are_those_of_the_dispersion_relation() {
             0.0,
             place,
         );
-        single.relative(f64::from(shallow_speed_f32(h32)), shallow_speed(h32.into()), 0.0, place);
+        single_shallow.relative(f64::from(shallow_speed_f32(h32)), shallow_speed(h32.into()), 0.0, place);
+        shallow.relative(shallow_speed(h), truth::shallow_speed(h), 0.0, place);
     }
     frequency.assert_below(1e-14, 4000);
     group.assert_below(1e-8, 2000);
-    single.assert_below(1e-6, 6000);
+    single.assert_below(1e-6, 4000);
+    shallow.assert_below(3e-16, 2000);
+    single_shallow.assert_below(3e-7, 2000);
     single_group.assert_below(2e-6, 2000);
     let mut wrong = Worst::default();
     wrong.relative(
@@ -112,14 +133,14 @@ fn waves_decay_at_the_published_rates() {
     for (wavelength, rate) in [(0.020, 0.161), (0.050, 0.290), (0.100, 0.247_46)] {
         assert!((bottom_damping(TAU / wavelength, 0.005) - rate).abs() < 5.1e-4);
     }
-    let [mut double, mut single] = [(); 2].map(|()| Worst::default());
+    let [mut double, mut single, mut in_bulk, mut single_in_bulk] = [(); 4].map(|()| Worst::default());
     for (k, h) in grid() {
         let (bulk, bottom) = truth::damping(k, h);
         let place = || format!("k {k}, h {h}");
-        double.relative(bulk_damping(k), bulk, 0.0, place);
+        in_bulk.relative(bulk_damping(k), bulk, 0.0, place);
         double.relative(bottom_damping(k, h), bottom, 1e-250, place);
         let (k32, h32) = (k as f32, h as f32);
-        single.relative(f64::from(bulk_damping_f32(k32)), bulk, 0.0, place);
+        single_in_bulk.relative(f64::from(bulk_damping_f32(k32)), bulk_damping(k32.into()), 0.0, place);
         single.relative(
             f64::from(bottom_damping_f32(k32, h32)),
             bottom_damping(k32.into(), h32.into()),
@@ -127,8 +148,13 @@ fn waves_decay_at_the_published_rates() {
             place,
         );
     }
-    double.assert_below(1e-13, 4000);
-    single.assert_below(2e-6, 4000);
+    double.assert_below(1e-13, 2000);
+    single.assert_below(2e-6, 2000);
+    in_bulk.assert_below(1e-15, 2000);
+    single_in_bulk.assert_below(4e-7, 2000);
+    let mut wrong = Worst::default();
+    wrong.relative(bulk_damping(105.0), truth::damping(100.0, 0.005).0, 0.0, String::new);
+    assert!(wrong.error > 0.05, "a wave number 5 % off goes unseen");
 }
 
 #[test]
@@ -183,5 +209,7 @@ proptest! {
         // Between gravity's half and capillarity's three halves.
         let ratio = group_speed(k, h) / phase_speed(k, h);
         prop_assert!((0.5..=2.0).contains(&ratio));
+        prop_assert!(shallow_speed(h * more) > shallow_speed(h) && bulk_damping(k * more) > bulk_damping(k));
+        prop_assert!(bottom_damping(k, h) >= bottom_damping(k, h * more));
     }
 }

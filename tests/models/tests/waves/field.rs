@@ -334,6 +334,26 @@ fn slopes_are_those_of_a_plane_and_one_sided_at_the_edge() {
     );
     tile.write_slopes(&mut slopes);
     assert_eq!(slopes[0][0], (0.25 - 1.75) / 2.0);
+    // Waves of 8, 16 and 32 cells around a tile: a tenth of the slope, then a quarter of that for each halving.
+    let errors = [8_u32, 16, 32].map(|cells| {
+        let k = std::f64::consts::TAU / f64::from(cells);
+        let tile = WaveSettings {
+            border: Border::Periodic,
+            ..settings(cells, cells, 0.5)
+        };
+        let field = started(&tile, |i, j| (k * i as f64).sin() + (k * j as f64).cos());
+        let mut slopes = vec![[0.0; 2]; (cells * cells) as usize];
+        field.write_slopes(&mut slopes);
+        (0..slopes.len()).fold(0.0_f64, |worst, index| {
+            let [x, z] = [index % cells as usize, index / cells as usize].map(|i| k * i as f64);
+            let [along, across] = slopes[index].map(f64::from);
+            worst.max((along / k - x.cos()).abs()).max((across / k + z.sin()).abs())
+        })
+    });
+    assert!(errors[0] < 0.1, "{errors:?}");
+    for pair in errors.windows(2) {
+        assert!((1.9..2.1).contains(&(pair[0] / pair[1]).log2()), "{errors:?}");
+    }
 }
 
 proptest! {

@@ -3,6 +3,7 @@
 mod borders;
 mod dispersion;
 mod field;
+mod impact;
 mod modes;
 mod open_water;
 mod rings;

@@ -196,6 +196,41 @@ fn sub_steps_are_as_few_as_the_bound_allows() {
     assert_eq!(sub_steps(Stencil::FivePoint, -1.0, 1.0, 0.5), 1);
     let field = WaveField::new(&WaveSettings::default()).expect("defaults");
     assert!(field.courant() <= 0.7 && field.courant() > 0.2);
+    // Counted up one by one: the same number, everywhere.
+    let mut counted = 0;
+    for stencil in [Stencil::FivePoint, Stencil::NinePoint] {
+        for i in 0..40 {
+            for j in 0..40 {
+                let (speed, cell) = (1e-3 * 1.3_f64.powi(i), 1e-4 * 1.3_f64.powi(j));
+                if speed / 60.0 < 3e3 * cell {
+                    let exact = truth::fewest_steps(stencil.max_courant(), speed, 1.0 / 60.0, cell);
+                    assert_eq!(sub_steps(stencil, speed, 1.0 / 60.0, cell), exact, "{speed} {cell}");
+                    let wrong = truth::fewest_steps(0.95 * stencil.max_courant(), speed, 1.0 / 60.0, cell);
+                    counted += u32::from(wrong != exact);
+                }
+            }
+        }
+    }
+    assert!(counted > 300, "a bound 5 % off goes unseen: {counted}");
+    for odd in [f64::NEG_INFINITY, -1.0, 0.0, 5e-324] {
+        assert_eq!(sub_steps(Stencil::FivePoint, 0.2, odd, 0.5), 1, "{odd}");
+    }
+    for (speed, interval, cell, steps) in [
+        (f64::INFINITY, 1.0, 1.0, u32::MAX),
+        (1.0, f64::INFINITY, 1.0, u32::MAX),
+        (1.0, 1.0, f64::INFINITY, 1),
+        (1.0, 1.0, 0.0, u32::MAX),
+        (1.0, 1.0, 5e-324, u32::MAX),
+        (1.0, f64::NAN, 1.0, 1),
+        (1.0, 1.0, f64::NAN, 1),
+        (0.0, f64::INFINITY, 1.0, 1),
+    ] {
+        assert_eq!(
+            sub_steps(Stencil::NinePoint, speed, interval, cell),
+            steps,
+            "{speed} {interval} {cell}"
+        );
+    }
 }
 
 #[test]
@@ -240,6 +275,22 @@ fn nothing_grows_in_a_million_steps_at_the_bound() {
         field.energy() / energy
     );
     assert!(peak(&field) < 4.0 * before, "{}", peak(&field));
+}
+
+proptest! {
+    #![proptest_config(cases(256))]
+    #[test]
+    fn sub_steps_hold_the_bound_and_are_fewest(
+        speed in 1e-3_f64..100.0, interval in 1e-6_f64..1.0, cell in 1e-4_f64..100.0, more in 1.0_f64..3.0, nine: bool,
+    ) {
+        let stencil = if nine { Stencil::NinePoint } else { Stencil::FivePoint };
+        let n = sub_steps(stencil, speed, interval, cell);
+        let courant = |n: u32| speed * interval / f64::from(n) / cell;
+        prop_assert!(courant(n) <= stencil.max_courant() * (1.0 + 2e-12));
+        prop_assert!(n == 1 || courant(n - 1) > stencil.max_courant());
+        prop_assert!(sub_steps(stencil, more * speed, interval, cell) >= n);
+        prop_assert!(sub_steps(stencil, speed, interval, more * cell) <= n);
+    }
 }
 
 proptest! {
