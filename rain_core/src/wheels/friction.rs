@@ -25,7 +25,10 @@ const DAMP: f64 = 0.3;
 /// above the texture takes grip by [`wet_grip`]. Values outside their domains are held there, what is not a number
 /// counts as 0. Falls with every kind of water and, on standing water, with speed. Source: dry and wet values are
 /// choices within published ranges (Wong 2008: asphalt and concrete 0.8–0.9 dry, 0.5–0.8 wet; gravel 0.6; earth road
-/// 0.68 dry, 0.55 wet). Error: rounding; measured friction scatters by a third with stone, polish and tyre.
+/// 0.68 dry, 0.55 wet).
+///
+/// Error: exact where dry or flooded, a choice between; measured friction scatters by a third with stone, polish and
+/// tyre.
 #[must_use]
 pub fn ground_friction(class: SurfaceClass, water: &GroundWater, tyre: &Tyre, speed_m_s: f64) -> f64 {
     let (dry, wet) = match class {

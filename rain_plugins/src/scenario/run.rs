@@ -320,8 +320,27 @@ impl Recorder {
         }
     }
 
-    /// The water of the whole domain: one surface column of the leading class, times the area.
+    /// The water of the whole domain: the ledger of the ground; without one, a surface column of the leading class times
+    /// the area.
     fn budget(&self, session: &mut Session) -> Budget {
+        if let Some(ground) = session.app().world().get_resource::<SurfaceGround>()
+            && ground.ground().is_some()
+        {
+            let l = ground.ledger();
+            return Budget {
+                rain_m3: l.supplied_m3(),
+                // What has left a cell and is not in its basin yet is film on its way.
+                film_m3: l.film_m3 + l.underway_m3,
+                pores_m3: l.pores_m3,
+                basins_m3: l.basins_m3,
+                airborne_m3: l.airborne_m3,
+                evaporated_m3: l.evaporated_m3,
+                infiltrated_m3: l.infiltrated_m3,
+                drained_m3: l.drained_m3(),
+                residual_relative: l.residual_relative,
+                ..Budget::default()
+            };
+        }
         let Some(weather) = session.weather() else {
             return Budget::default();
         };

@@ -3,5 +3,6 @@
 mod device_loss;
 mod groups;
 mod materials;
+mod puddles;
 mod skipping;
 mod two_views;
