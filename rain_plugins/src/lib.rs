@@ -93,7 +93,8 @@ pub mod prelude {
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::surface::{
-        KeepDry, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint, SurfaceWetting, WaterAppearance,
+        KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint, SurfaceWetting,
+        WaterAppearance,
     };
     pub use crate::waves::{WaterDisturber, WaveWaterSettings};
     pub use crate::{
