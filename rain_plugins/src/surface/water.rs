@@ -107,7 +107,7 @@ impl WaterAppearance {
 /// tenth of it is taken (chosen by eye), and nothing below 1 m/s, where no ripple forms.
 #[must_use]
 pub fn wind_slope_variance(wind_m_s: f64) -> f64 {
-    if !(wind_m_s > 1.0) {
+    if wind_m_s.is_nan() || wind_m_s <= 1.0 {
         return 0.0;
     }
     0.1 * (0.003 + 0.00512 * wind_m_s.min(40.0)) * ((wind_m_s - 1.0) / 2.0).min(1.0)

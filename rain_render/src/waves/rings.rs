@@ -122,34 +122,47 @@ impl RippleTile {
         steps as u32
     }
 
-    /// The drops of one step.
-    fn rain(&mut self) {
-        let slot = self.steps;
-        self.steps = self.steps.wrapping_add(1);
+    /// The drops of the step with this number under the present rain, in the order in which they are added.
+    pub fn for_each_drop(&self, step: u32, mut visit: impl FnMut(DropImpact)) {
         let Some(diameters) = &self.diameters else { return };
-        let rules = &self.rules;
-        let mean = self.drops_per_m2_s * self.settings.side_m * self.settings.side_m * rules.step_s();
-        let (plan, bound) = (&mut self.plan, &mut self.bound);
-        for_each_impact(self.settings.seed, [0, 0], slot, mean, |event| {
+        let side_m = self.settings.side_m;
+        let mean = self.drops_per_m2_s * side_m * side_m * self.rules.step_s();
+        for_each_impact(self.settings.seed, [0, 0], step, mean, |event| {
             let [u, _, _] = hash::pcg3d([event.key[1], event.key[2], event.key[0]]);
             let diameter_mm = f64::from(diameters.diameter_mm(hash::unit_f32(u)));
-            let place = event.place.map(f64::from);
-            let impact = DropImpact {
-                x_m: place[0] * self.settings.side_m,
-                z_m: place[1] * self.settings.side_m,
+            let [x_m, z_m] = event.place.map(|place| f64::from(place) * side_m);
+            visit(DropImpact {
+                x_m,
+                z_m,
                 diameter_mm,
                 speed_m_s: terminal_velocity(diameter_mm),
-            };
-            let way = drop_way(rules, &impact);
-            let norm = way.width * core::f64::consts::PI.sqrt();
-            // A Laplacian with the factor F makes heights of |F/(c k)| (k s)²: the norm of a gradient. The bump's own
-            // start from rest is in `back` and adds nothing to its amplitude.
-            let push = 0.5 * impact.peak_velocity(rules.deepest_m(), way.width * rules.cell_m);
-            let rise = push * way.width * rules.cell_m / rules.speed_m_s * core::f64::consts::PI.sqrt() * way.width;
-            bound.add(MARGIN * (way.height * norm + rise), 0.0);
-            plan.push(rules, &way);
+            });
         });
-        self.asleep = false;
+    }
+
+    /// Adds the drops of one step.
+    fn rain(&mut self) {
+        let rules = self.rules;
+        let (mut plan, mut bound) = (core::mem::take(&mut self.plan), self.bound);
+        self.for_each_drop(self.steps, |impact| {
+            let way = drop_way(&rules, &impact);
+            let norm = way.width * core::f64::consts::PI.sqrt();
+            // A Laplacian of the factor F makes waves of F s²k/c: the norm of a gradient. What the bump adds to `back`
+            // is its start from rest and does not raise it.
+            let width_m = way.width * rules.cell_m;
+            let push = 0.5 * impact.peak_velocity(rules.deepest_m(), width_m);
+            bound.add(MARGIN * norm * (way.height + push * width_m / rules.speed_m_s), 0.0);
+            plan.push(&rules, &way);
+        });
+        (self.plan, self.bound) = (plan, bound);
+        self.asleep &= self.diameters.is_none();
+        self.steps = self.steps.wrapping_add(1);
+    }
+
+    /// Number of steps done so far, which is that of the next step.
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        self.steps
     }
 
     /// Whether nothing moves that can be seen, and it does not rain.

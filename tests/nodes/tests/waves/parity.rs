@@ -18,9 +18,8 @@ fn over_pond(gpu: &Device, settings: &WaveTileSettings) -> Puddles {
     let mut puddles = Puddles::new(gpu, settings);
     let half = 0.5 * puddles.tile.side_m();
     assert!(puddles.tile.follow(CORNER.map(|at| at + half), world));
-    for axis in 0..2 {
-        assert!((puddles.tile.corner_m()[axis] - CORNER[axis]).abs() < 1e-9);
-    }
+    let corner = puddles.tile.corner_m();
+    assert!(corner.iter().zip(CORNER).all(|(found, at)| (found - at).abs() < 1e-9));
     puddles
 }
 
@@ -121,7 +120,7 @@ fn water_with_shores_depths_and_sources_equals_the_field_for_600_steps() {
     let Some(gpu) = device() else { return };
     let settings = bare();
     let error = worst(&gpu, &settings, &mut field(&settings, pond), 1);
-    println!("step by step: {error:.2e} of the amplitude");
+    eprintln!("step by step: {error:.2e} of the amplitude");
     assert!(error < 1e-5, "{error:.2e}");
     // A per cent of depth is told apart.
     let mut other = field(&settings, |x, z| 0.99 * pond(x, z));
@@ -133,7 +132,7 @@ fn long_frames_split_ways_among_their_steps() {
     let Some(gpu) = device() else { return };
     let settings = bare();
     let error = worst(&gpu, &settings, &mut field(&settings, pond), 4);
-    println!("four steps at a time: {error:.2e} of the amplitude");
+    eprintln!("four steps at a time: {error:.2e} of the amplitude");
     assert!(error < 1e-5, "{error:.2e}");
 }
 
@@ -214,7 +213,7 @@ fn energy(
     sum
 }
 
-/// The CPU's own test takes a million steps (`no_growth_over_a_million_steps_at_the_bound` and its like in the models'
+/// The CPU's own test takes a million steps (`nothing_grows_in_a_million_steps_at_the_bound` in the models
 /// tests); the argument is the same here: the scheme is that of the field, and C stays at 0.7 or below.
 #[test]
 fn energy_stays_for_20000_undisturbed_steps_at_the_bound() {
