@@ -23,6 +23,7 @@ pub use tile::PuddleWaves;
 
 use crate::render_adapter::RenderApp;
 use crate::schedule::RainViewSystems;
+use crate::surface::WaterLevels;
 
 /// Settings of rings and waves. Changes take effect when the app starts.
 #[derive(Resource, Clone, Copy, Debug, Default)]
@@ -59,7 +60,7 @@ impl Plugin for WavesPlugin {
                 PostUpdate,
                 (
                     rings::rain_on_water.run_if(resource_exists::<RainRings>),
-                    tile::move_water.run_if(resource_exists::<PuddleWaves>),
+                    tile::move_water.run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
                 )
                     .in_set(RainViewSystems::Views),
             );
