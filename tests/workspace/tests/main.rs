@@ -8,3 +8,4 @@ mod licences;
 mod physics;
 mod repository;
 mod source;
+mod stated_errors;
