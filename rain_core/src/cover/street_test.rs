@@ -205,7 +205,7 @@ fn misclassified_shares_are_those_published() {
             assert!(all(m.three_starts) < 1.1 * all(m.one_bound), "{case}");
         }
         assert!(
-            all(m.three_starts) < if cell < 0.1 { 2.3 } else { 3.0 },
+            all(m.three_starts) / 100.0 < if cell < 0.1 { 0.023 } else { 0.03 },
             "{case}: {:?}",
             m.three_starts
         );

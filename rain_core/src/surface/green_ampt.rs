@@ -104,7 +104,8 @@ impl GreenAmpt {
     }
 
     /// What has infiltrated `time_h` after the dry soil was flooded. Units: mm, hours.
-    /// Times below 0 and NaN count as 0, those above 1e9 h as 1e9 h. Error: 1e-12 relative.
+    /// Times below 0 and NaN count as 0, those above 1e9 h as 1e9 h. Error: 1e-12 relative in its own equation, 1e-8
+    /// against its integral summed, which is as far as the sum reaches.
     #[must_use]
     pub fn flooded_mm(&self, time_h: f64) -> f64 {
         self.flooded_from_mm(0.0, time_h)

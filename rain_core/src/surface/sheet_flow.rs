@@ -92,7 +92,8 @@ impl SheetFlow {
     }
 
     /// Steady depth at x from the top, (i x/α)^(1/m). Units: m. x is clamped to the plane, NaN counts as 0.
-    /// Error: 2e-15 relative.
+    /// Error: 2e-15 relative; within 1 % of the local inertial equations on the check planes, and 2.2 % (L1) on a plane
+    /// askew to a grid, which is that grid's.
     #[must_use]
     pub fn steady_depth_m(&self, x_m: f64) -> f64 {
         let ratio = self.rain_m_s * self.on_plane(x_m) / self.coefficient;

@@ -50,7 +50,7 @@ impl Stencil {
 /// `speed_m_s` in m/s, `interval_s` in s, `cell_m` in m. Inputs that are not positive and finite, and cuts into more
 /// than 2³² steps, give the nearest end of [1, u32::MAX].
 ///
-/// Error: none: the fewest steps within the bound, which counts as met to 1e-12.
+/// Error: none: the fewest steps within the bound, which counts as met within rounding.
 #[must_use]
 pub fn sub_steps(stencil: Stencil, speed_m_s: f64, interval_s: f64, cell_m: f64) -> u32 {
     let steps = (speed_m_s * interval_s / (stencil.max_courant() * cell_m) * (1.0 - 1e-12)).ceil();

@@ -35,7 +35,7 @@ fn course(u: f64, ln_gap: f64) -> f64 {
     sum
 }
 
-/// u after T under supply, from u₀ ≠ 1.
+/// u after T under supply, from u₀ ≠ 1. Error: 1e-9 relative against a sum.
 ///
 /// v = −ln|1 − u| runs to infinity as u goes to 1 from either side, and F over v is convex with a slope of at most 0.6:
 /// from the second step on Newton falls to the root.
@@ -72,7 +72,7 @@ pub(super) fn towards_equilibrium(u0: f64, time: f64) -> f64 {
     at(v)
 }
 
-/// u after T under loss, or the T at which the film is gone.
+/// u after T under loss, or the T at which the film is gone. Error: 1e-9 relative against a sum.
 pub(super) fn towards_nothing(u0: f64, time: f64) -> Result<f64, f64> {
     let fall = |u: f64| -course(-u, ops::ln_1p(u));
     let whole = fall(u0);

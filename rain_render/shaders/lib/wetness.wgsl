@@ -5,7 +5,7 @@ fn rain_point_wetness(state: vec4<f32>, exposure: f32) -> f32 {
     return clamp(state.x * exposure, 0.0, 1.0);
 }
 
-// Share of the surface that stands under a water film, 0..1.
+// Share of the surface that stands under a water film, 0..1. Error: 1e-5.
 fn rain_point_film(state: vec4<f32>, exposure: f32) -> f32 {
     let t = clamp(state.y * exposure / max(state.z, 1e-3), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -17,7 +17,7 @@ fn rain_catch(up: f32, facing: f32) -> f32 {
     return clamp(smoothstep(-0.05, 0.35, facing), 0.0, 1.0) * clamp(0.4 + 0.6 * smoothstep(0.0, 0.5, up), 0.0, 1.0);
 }
 
-// Albedo of a wet porous surface: Lekner & Dorf 1988 with n = 1.333 over n = 1.55.
+// Albedo of a wet porous surface: Lekner & Dorf 1988 with n = 1.333 over n = 1.55. Error: 2e-5.
 fn rain_wet_albedo(dry: vec3<f32>) -> vec3<f32> {
     let absorbed = 1.0 - clamp(dry, vec3<f32>(0.0), vec3<f32>(1.0));
     let inside = absorbed * ((1.0 - absorbed) * ((1.0 - 0.0375281) / (1.0 - 0.0990658)) + absorbed);

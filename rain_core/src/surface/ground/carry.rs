@@ -11,6 +11,8 @@ impl Ground {
     /// Each cell's water goes in equal parts to the cells whose centre lies in it, or else to the cell that holds its
     /// centre; what pores cannot hold becomes film. Each pool's water is poured in at its lowest place.
     ///
+    /// Error: the balance closes to 1e-12 of the water supplied.
+    ///
     /// # Errors
     /// None for a ground that came about by the methods here.
     pub fn take_over(&mut self, old: &Self) -> Result<(), ConfigError> {

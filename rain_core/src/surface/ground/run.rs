@@ -221,6 +221,9 @@ impl Ground {
     /// Advances by `dt_s` (units: s; domain: [0, 1e9]) under constant conditions: one call for each tick, with `steps`
     /// normal ticks in it (above 1 in fast-forward; 0 counts as 1). From `interval_steps` on every cell is advanced.
     ///
+    /// Error: within 2e-3 of what films held up to 1 s before and basins up to 3 s before; at rest 3e-3 against cells
+    /// advanced every tick, 1e-6 against turns of one tick.
+    ///
     /// # Errors
     /// When a rate or the time is outside its domain; then nothing changes.
     pub fn advance(&mut self, forcing: &ColumnForcing, dt_s: f64, steps: u32) -> Result<(), ConfigError> {

@@ -262,9 +262,9 @@ fn turns_cost_little_against_advancing_every_tick() {
             let seen = past.iter().rev().take(late + 1).map(|p| p[which]);
             let low = seen.clone().fold(f64::INFINITY, f64::min);
             let high = seen.fold(0.0, f64::max);
-            let slack = 2e-3 * high + 1e-6;
+            let allowed = 2e-3 * high + 1e-6;
             assert!(
-                value > low - slack && value < high + slack,
+                value > low - allowed && value < high + allowed,
                 "{t}: {which}, {low} {value} {high}"
             );
             compared += 1;

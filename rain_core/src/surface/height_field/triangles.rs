@@ -39,7 +39,7 @@ impl fmt::Display for LeftOutTriangles {
 /// precision, within the heights of its corners.
 ///
 /// Error: ≤ 1e-9 m against the plane of the triangle over cell centres farther than 2⁻¹³ of a cell from its edges, for
-/// coordinates up to 10 km and slopes up to 10.
+/// coordinates up to 10 km and slopes up to 10; 1e-7 m at 2000 km.
 #[derive(Debug, Clone)]
 pub struct TriangleRaster {
     frame: GridFrame,
