@@ -12,7 +12,7 @@ use rain_reference::basins::{Field, Tank, cascade, lossy_volume};
 
 /// Every study of this file.
 pub fn studies() -> Vec<Study> {
-    vec![bake(), cascades(), seepage()]
+    vec![bake(), sizes(), cascades(), seepage()]
 }
 
 /// A number in [0, 1) from integers.
@@ -151,6 +151,39 @@ fn bake() -> Study {
         norm: "max |filled − reference| at 64², m",
         unit: "cell",
         variants,
+    }
+}
+
+/// |Σ volumes − Σ (filled − ground)| over the latter.
+fn volume_error(n: usize, z: &[f64]) -> f64 {
+    let baked = baked(n, z, 0.0);
+    let filled = baked.filled(z).expect("the baked grid");
+    let stood: f64 = filled.iter().zip(z).map(|(level, ground)| level - ground).sum();
+    let tops = baked.basins().iter().filter(|basin| basin.parent.is_none());
+    let volume: f64 = tops.filter_map(|basin| basin.volume_m3).sum();
+    (volume / stood - 1.0).abs()
+}
+
+fn sizes() -> Study {
+    let error = volume_error(256, &ground(256, 7));
+    let variant = |n: usize| {
+        // Made when it is run: the larger ones take seconds.
+        let mut z = Vec::new();
+        Variant::new(format!("{n}²"), error, (n * n) as u64, move || {
+            if z.is_empty() {
+                z = ground(n, 7);
+            }
+            baked(n, black_box(&z), 1e-4).off_map_m2()
+        })
+    };
+    let sizes = [256, 512, 1024, 2048, 4096];
+    let variants = sizes.map(|n| if n == 1024 { variant(n).default() } else { variant(n) });
+    Study {
+        name: "puddle-bake-size",
+        title: "Basins of fractal ground, from 256² to 4096² cells",
+        norm: "|ΣV / Σ(filled − ground) − 1| at 256²",
+        unit: "cell",
+        variants: variants.into(),
     }
 }
 

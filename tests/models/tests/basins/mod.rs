@@ -3,6 +3,7 @@
 mod bake;
 mod drains;
 mod filling;
+mod large;
 mod losses;
 mod robust;
 mod terrain;

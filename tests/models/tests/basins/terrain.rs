@@ -87,3 +87,33 @@ pub fn drawn(rows: &[&str]) -> Field {
         closed: false,
     }
 }
+
+/// Fractal ground of n × n cells of 1 m: octaves of value noise, each half as high as the one before, quick to make.
+pub fn fractal(n: usize, seed: u64) -> Vec<f64> {
+    let mut heights = vec![0.0; n * n];
+    let mut step = 256;
+    while step >= 2 {
+        let corner = |x: usize, z: usize| step as f64 / 64.0 * unit(x as u64, z as u64, seed + step as u64);
+        let smooth: Vec<f64> = (0..step)
+            .map(|i| i as f64 / step as f64)
+            .map(|t| t * t * (3.0 - 2.0 * t))
+            .collect();
+        for (z, row) in heights.chunks_exact_mut(n).enumerate() {
+            let v = smooth[z % step];
+            let side = |x: usize| {
+                let (near, far) = (corner(x, z / step), corner(x, z / step + 1));
+                near + v * (far - near)
+            };
+            let mut left = side(0);
+            for (x, cells) in row.chunks_mut(step).enumerate() {
+                let right = side(x + 1);
+                for (height, u) in cells.iter_mut().zip(&smooth) {
+                    *height += left + u * (right - left);
+                }
+                left = right;
+            }
+        }
+        step /= 2;
+    }
+    heights
+}
