@@ -63,21 +63,65 @@ pub fn in_range(
     }
 }
 
-/// `value` held in [min, max]; what is not a number becomes `min`. For evaluators that must always answer.
+/// `value` held in [min, max]; what is not a number becomes `min`, and -0 a `min` of 0. For evaluators that must always
+/// answer.
 #[must_use]
+#[inline]
 pub(crate) fn clamped(value: f64, min: f64, max: f64) -> f64 {
-    if value.is_nan() { min } else { value.clamp(min, max) }
+    if value > min { value.min(max) } else { min }
 }
 
 /// [`clamped`] in single precision.
 #[must_use]
+#[inline]
 pub(crate) fn clamped_f32(value: f32, min: f32, max: f32) -> f32 {
-    if value.is_nan() { min } else { value.clamp(min, max) }
+    if value > min { value.min(max) } else { min }
+}
+
+/// `value` held in [min, max]; what is not a number becomes `other`.
+#[must_use]
+#[inline]
+pub(crate) fn clamped_or(value: f64, min: f64, max: f64, other: f64) -> f64 {
+    if value.is_nan() {
+        other
+    } else {
+        clamped(value, min, max)
+    }
+}
+
+/// [`clamped_or`] in single precision.
+#[must_use]
+#[inline]
+pub(crate) fn clamped_or_f32(value: f32, min: f32, max: f32, other: f32) -> f32 {
+    if value.is_nan() {
+        other
+    } else {
+        clamped_f32(value, min, max)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_must_answer_is_held_in_its_range() {
+        for (value, held, other) in [
+            (-1.0, 2.0, 2.0),
+            (2.0, 2.0, 2.0),
+            (2.5, 2.5, 2.5),
+            (4.0, 3.0, 3.0),
+            (f64::INFINITY, 3.0, 3.0),
+            (f64::NEG_INFINITY, 2.0, 2.0),
+            (f64::NAN, 2.0, 7.0),
+        ] {
+            assert_eq!(clamped(value, 2.0, 3.0), held, "{value}");
+            assert_eq!(clamped_or(value, 2.0, 3.0, 7.0), other, "{value}");
+            assert_eq!(f64::from(clamped_f32(value as f32, 2.0, 3.0)), held, "{value}");
+            assert_eq!(f64::from(clamped_or_f32(value as f32, 2.0, 3.0, 7.0)), other, "{value}");
+        }
+        assert!(clamped(-0.0, 0.0, 1.0).is_sign_positive() && clamped_f32(-0.0, 0.0, 1.0).is_sign_positive());
+    }
 
     #[test]
     fn numbers_in_messages_are_short() {

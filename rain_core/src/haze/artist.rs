@@ -3,7 +3,7 @@
 //! # Accuracy
 //! A look, no optics: the physical fog of rain is [`super::HazeSharing`].
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 
 /// Luminance of linear Rec. 709 colours: the default. Units: none.
 pub const LUMA_LINEAR: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -44,8 +44,7 @@ pub fn artist_fog_amount(relative_intensity: f64) -> f64 {
 /// Error: 1e-15 relative; a look.
 #[must_use]
 pub fn fog_density(area_per_m: f64, gain: f64, amount: f64) -> f64 {
-    let within = |x: f64, max: f64| if x > 0.0 { x.min(max) } else { 0.0 };
-    within(area_per_m, 1e3) * (1.0 + within(gain, 1e3) * within(amount, 1.0))
+    clamped(area_per_m, 0.0, 1e3) * (1.0 + clamped(gain, 0.0, 1e3) * clamped(amount, 0.0, 1.0))
 }
 
 /// A colour drawn towards its own luminance: lerp(colour, Y, weight), Y = luma · colour. Digest E, eq. 13.

@@ -5,6 +5,7 @@
 //! 0.1°, which a camera cannot tell from the direct beam: what a picture loses lies between Q = 1 and 2. Measured
 //! visibility in rain also contains mist.
 
+use crate::error::{clamped, clamped_f32, clamped_or};
 use crate::ops;
 use crate::rainfall::Spectrum;
 
@@ -23,11 +24,7 @@ const MAX_DEPTH: f64 = 700.0;
 /// Error: 1e-10 relative against the sum over diameters.
 #[must_use]
 pub fn extinction_per_m(spectrum: &Spectrum, efficiency: f64) -> f64 {
-    let q = if efficiency.is_nan() {
-        EXTINCTION_EFFICIENCY
-    } else {
-        efficiency.clamp(0.0, 4.0)
-    };
+    let q = clamped_or(efficiency, 0.0, 4.0, EXTINCTION_EFFICIENCY);
     q * spectrum.extinction_per_m(0.0, f64::INFINITY)
 }
 
@@ -38,7 +35,7 @@ pub fn extinction_per_m(spectrum: &Spectrum, efficiency: f64) -> f64 {
 /// Error: 1e-15 relative.
 #[must_use]
 pub fn transmittance(depth: f64) -> f64 {
-    ops::exp(-clamped(depth))
+    ops::exp(-clamped(depth, 0.0, MAX_DEPTH))
 }
 
 /// Light that does not get through, 1 − e^(−τ), exact for small τ. `depth` as in [`transmittance`]. Units: none.
@@ -46,7 +43,7 @@ pub fn transmittance(depth: f64) -> f64 {
 /// Error: 1e-15 relative, also for tiny τ.
 #[must_use]
 pub fn obscured(depth: f64) -> f64 {
-    -ops::exp_m1(-clamped(depth))
+    -ops::exp_m1(-clamped(depth, 0.0, MAX_DEPTH))
 }
 
 /// [`transmittance`] in single precision, `depth` clamped to [0, 80].
@@ -55,7 +52,7 @@ pub fn obscured(depth: f64) -> f64 {
 #[must_use]
 #[inline]
 pub fn transmittance_f32(depth: f32) -> f32 {
-    ops::expf(-clamped_f32(depth))
+    ops::expf(-clamped_f32(depth, 0.0, 80.0))
 }
 
 /// [`obscured`] in single precision, `depth` clamped to [0, 80].
@@ -64,7 +61,7 @@ pub fn transmittance_f32(depth: f32) -> f32 {
 #[must_use]
 #[inline]
 pub fn obscured_f32(depth: f32) -> f32 {
-    -ops::exp_m1f(-clamped_f32(depth))
+    -ops::exp_m1f(-clamped_f32(depth, 0.0, 80.0))
 }
 
 /// Radiance behind an optical depth of haze: L e^(−τ) + L_fog (1 − e^(−τ)), each colour. Units: those of the radiances.
@@ -86,12 +83,4 @@ pub fn inscattered(radiance: [f64; 3], fog_radiance: [f64; 3], depth: f64) -> [f
 pub fn inscattered_f32(radiance: f32, fog_radiance: f32, depth: f32) -> f32 {
     let lost = obscured_f32(depth);
     radiance * (1.0 - lost) + fog_radiance * lost
-}
-
-fn clamped(depth: f64) -> f64 {
-    if depth > 0.0 { depth.min(MAX_DEPTH) } else { 0.0 }
-}
-
-fn clamped_f32(depth: f32) -> f32 {
-    if depth > 0.0 { depth.min(80.0) } else { 0.0 }
 }

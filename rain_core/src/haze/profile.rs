@@ -4,7 +4,7 @@
 //! An exponential profile over level ground, uniform along it. Nothing is marched: the optical depth of any straight
 //! way is a closed form.
 
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, clamped_or, in_range};
 use crate::ops;
 
 /// Longest way that is looked at; longer ones count as this. Units: m.
@@ -69,14 +69,8 @@ impl HeightHaze {
     /// from both ends; the part below: σ₀ × length.
     #[must_use]
     pub fn depth(&self, from_m: f64, to_m: f64, way_m: f64) -> f64 {
-        let way = if way_m > 0.0 { way_m.min(MAX_WAY_M) } else { 0.0 };
-        let above = |y: f64| {
-            if y.is_nan() {
-                0.0
-            } else {
-                y.clamp(-MAX_WAY_M, MAX_WAY_M) - self.base_height_m
-            }
-        };
+        let way = clamped(way_m, 0.0, MAX_WAY_M);
+        let above = |y: f64| clamped_or(y, -MAX_WAY_M, MAX_WAY_M, self.base_height_m) - self.base_height_m;
         let (a, b) = (above(from_m), above(to_m));
         let (low, high) = (a.min(b), a.max(b));
         if high <= 0.0 {

@@ -5,6 +5,7 @@
 //! factor of two (mist, wind, lighting).
 
 use super::extinction::transmittance;
+use crate::error::clamped_or;
 use crate::ops;
 
 /// Contrast threshold of Koschmieder 1924: −ln 0.02 = 3.912. Units: none.
@@ -37,11 +38,7 @@ pub fn visibility_m(extinction_per_m: f64, threshold: f64) -> f64 {
 /// Error: 1e-15 relative.
 #[must_use]
 pub fn extinction_for_visibility_per_m(visibility_m: f64, threshold: f64) -> f64 {
-    let v = if visibility_m.is_nan() {
-        MAX_VISIBILITY_M
-    } else {
-        visibility_m.clamp(1e-3, MAX_VISIBILITY_M)
-    };
+    let v = clamped_or(visibility_m, 1e-3, MAX_VISIBILITY_M, MAX_VISIBILITY_M);
     depth_of(threshold) / v
 }
 
@@ -56,10 +53,5 @@ pub fn contrast_at(extinction_per_m: f64, distance_m: f64) -> f64 {
 }
 
 fn depth_of(threshold: f64) -> f64 {
-    let t = if threshold.is_nan() {
-        KOSCHMIEDER_CONTRAST
-    } else {
-        threshold.clamp(1e-6, 1.0)
-    };
-    -ops::ln(t)
+    -ops::ln(clamped_or(threshold, 1e-6, 1.0, KOSCHMIEDER_CONTRAST))
 }

@@ -12,6 +12,7 @@
 use glam::Vec3;
 
 use super::fresnel::fresnel_polarised_f32;
+use crate::error::clamped_or_f32;
 use crate::rainfall::DropOutline;
 
 /// One way that light takes through a drop to the eye.
@@ -34,7 +35,7 @@ impl DropBody {
     /// From heights in horizontal semi-axes, each clamped to [0.1, 10]; NaN counts as 1. Equal ones make a spheroid.
     #[must_use]
     pub fn new(upper: f32, lower: f32) -> Self {
-        let [upper, lower] = [upper, lower].map(|h| if h.is_nan() { 1.0 } else { h.clamp(0.1, 10.0) });
+        let [upper, lower] = [upper, lower].map(|h| clamped_or_f32(h, 0.1, 10.0, 1.0));
         Self { upper, lower }
     }
 

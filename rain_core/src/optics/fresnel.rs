@@ -4,6 +4,7 @@
 //! Smooth, loss-free, non-magnetic media of real index: exact. Water's index varies by 0.5 % over the visible; F₀ by 2
 //! %.
 
+use crate::error::{clamped_or, clamped_or_f32};
 use crate::ops;
 use crate::quadrature::GaussLegendre;
 
@@ -91,16 +92,8 @@ pub fn fresnel_f32(cos_incidence: f32, relative_index: f32) -> f32 {
 /// (s, p) of [`fresnel_f32`].
 #[inline]
 pub(super) fn fresnel_polarised_f32(cos_incidence: f32, relative_index: f32) -> [f32; 2] {
-    let c = if cos_incidence.is_nan() {
-        1.0
-    } else {
-        cos_incidence.clamp(0.0, 1.0)
-    };
-    let n = if relative_index.is_nan() {
-        1.0
-    } else {
-        relative_index.clamp(0.1, 10.0)
-    };
+    let c = clamped_or_f32(cos_incidence, 0.0, 1.0, 1.0);
+    let n = clamped_or_f32(relative_index, 0.1, 10.0, 1.0);
     if n == 1.0 {
         return [0.0; 2];
     }
@@ -143,11 +136,7 @@ pub fn schlick(cos_incidence: f64, relative_index: f64) -> f64 {
 #[must_use]
 #[inline]
 pub fn schlick_f32(cos_incidence: f32, normal_reflectance: f32) -> f32 {
-    let c = if cos_incidence.is_nan() {
-        1.0
-    } else {
-        cos_incidence.clamp(0.0, 1.0)
-    };
+    let c = clamped_or_f32(cos_incidence, 0.0, 1.0, 1.0);
     let f0 = if normal_reflectance > 0.0 {
         normal_reflectance.min(1.0)
     } else {
@@ -234,14 +223,10 @@ fn mean_near_one(n: f64) -> f64 {
 }
 
 fn cosine(c: f64) -> f64 {
-    if c.is_nan() { 1.0 } else { c.clamp(0.0, 1.0) }
+    clamped_or(c, 0.0, 1.0, 1.0)
 }
 
 /// The index inside its range.
 fn index(n: f64) -> f64 {
-    if n.is_nan() {
-        1.0
-    } else {
-        n.clamp(INDEX_RANGE[0], INDEX_RANGE[1])
-    }
+    clamped_or(n, INDEX_RANGE[0], INDEX_RANGE[1], 1.0)
 }

@@ -6,11 +6,12 @@
 
 use core::f64::consts::{PI, TAU};
 
+use crate::error::clamped;
 use crate::ops;
 
 /// Impact parameter in [0, 1]; NaN counts as 0.
 fn impact(s: f64) -> f64 {
-    if s > 0.0 { s.min(1.0) } else { 0.0 }
+    clamped(s, 0.0, 1.0)
 }
 
 /// Index in [1, 10]; NaN counts as 1.

@@ -10,13 +10,15 @@
 
 use super::terminal_velocity::terminal_velocity;
 use crate::constants::GRAVITY;
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, clamped_f32, in_range};
 use crate::ops;
 
 /// Longest time that is looked at; later ones count as this. Units: s.
 pub const MAX_FALL_TIME_S: f64 = 1e6;
 /// Highest fall that is looked at; higher ones count as this. Units: m.
 pub const MAX_FALL_HEIGHT_M: f64 = 1e6;
+/// Least and largest terminal speed. Units: m/s.
+const SPEEDS_M_S: [f64; 2] = [1e-6, 1e3];
 /// Highest initial speed, in terminal speeds; faster ones count as this. Units: none.
 const MAX_INITIAL_RATIO: f64 = 1e6;
 
@@ -62,7 +64,13 @@ impl Fall {
     /// When a value is not finite or outside its range.
     pub fn new(terminal_m_s: f64, stiffness: f64) -> Result<Self, ConfigError> {
         Ok(Self {
-            terminal_m_s: in_range("terminal_m_s", terminal_m_s, 1e-6, 1e3, "1e-6 to 1000 m/s")?,
+            terminal_m_s: in_range(
+                "terminal_m_s",
+                terminal_m_s,
+                SPEEDS_M_S[0],
+                SPEEDS_M_S[1],
+                "1e-6 to 1000 m/s",
+            )?,
             stiffness: in_range("stiffness", stiffness, 0.01, 10.0, "0.01 to 10")?,
         })
     }
@@ -86,6 +94,15 @@ impl Fall {
         Self::new(terminal_m_s, 1.0)
     }
 
+    /// [`Fall::quadratic`] for evaluators that must always answer: the speed is held in its range, NaN counts as its lower
+    /// end.
+    pub(crate) fn quadratic_held(terminal_m_s: f64) -> Self {
+        Self {
+            terminal_m_s: clamped(terminal_m_s, SPEEDS_M_S[0], SPEEDS_M_S[1]),
+            stiffness: 1.0,
+        }
+    }
+
     /// Units: m/s.
     #[must_use]
     pub fn terminal_m_s(&self) -> f64 {
@@ -101,7 +118,7 @@ impl Fall {
     /// Speed and way after `time_s`, from `initial_m_s`.
     #[must_use]
     pub fn at(&self, time_s: f64, initial_m_s: f64) -> FallState {
-        let tau = within(time_s, MAX_FALL_TIME_S) * GRAVITY / self.terminal_m_s;
+        let tau = clamped(time_s, 0.0, MAX_FALL_TIME_S) * GRAVITY / self.terminal_m_s;
         let u0 = self.ratio(initial_m_s);
         let [u, z] = motion(self.stiffness, tau, u0);
         FallState {
@@ -123,10 +140,18 @@ impl Fall {
     }
 
     /// Time to fall `height_m` from `initial_m_s`: Halley's rule on the closed z(t), kept inside bounds. Units: s.
+    ///
+    /// For c = 1 from rest without iteration: t = (v_t/g) arcosh(e^(gz/v_t²)).
     #[must_use]
     pub fn time_to_fall_s(&self, height_m: f64, initial_m_s: f64) -> f64 {
-        let z = within(height_m, MAX_FALL_HEIGHT_M) / self.length_m();
-        arrival(self.stiffness, z, self.ratio(initial_m_s))[0] * self.terminal_m_s / GRAVITY
+        let z = clamped(height_m, 0.0, MAX_FALL_HEIGHT_M) / self.length_m();
+        let u0 = self.ratio(initial_m_s);
+        let tau = if self.stiffness == 1.0 && u0 == 0.0 {
+            quadratic_time_from_rest(z)
+        } else {
+            arrival(self.stiffness, z, u0)[0]
+        };
+        tau * self.terminal_m_s / GRAVITY
     }
 
     /// Speed after a fall of `height_m` from `initial_m_s`. Units: m/s.
@@ -134,7 +159,7 @@ impl Fall {
     /// For c = 1 without iteration: v² = v₀² e^(−2gz/v_t²) + v_t² (1 − e^(−2gz/v_t²)).
     #[must_use]
     pub fn speed_after_m_s(&self, height_m: f64, initial_m_s: f64) -> f64 {
-        let z = within(height_m, MAX_FALL_HEIGHT_M) / self.length_m();
+        let z = clamped(height_m, 0.0, MAX_FALL_HEIGHT_M) / self.length_m();
         let u0 = self.ratio(initial_m_s);
         let u = if self.stiffness == 1.0 {
             quadratic_speed_ratio(z, u0)
@@ -149,7 +174,7 @@ impl Fall {
     /// `share`: clamped to [0, 1 − 1e-12], NaN counts as 0. Exact: z = −[ln(1−u) + ln(1+cu)/c]/(1+c) · v_t²/g.
     #[must_use]
     pub fn distance_to_share_m(&self, share: f64) -> f64 {
-        let u = within(share, 1.0 - 1e-12);
+        let u = clamped(share, 0.0, 1.0 - 1e-12);
         let c = self.stiffness;
         // −ln(1−u) − ln(1+cu)/c cancels to (1+c) u²/2 for small u.
         let z = if u * c.max(1.0) < 1e-3 {
@@ -176,13 +201,8 @@ impl Fall {
     }
 
     fn ratio(&self, initial_m_s: f64) -> f64 {
-        within(initial_m_s / self.terminal_m_s, MAX_INITIAL_RATIO)
+        clamped(initial_m_s / self.terminal_m_s, 0.0, MAX_INITIAL_RATIO)
     }
-}
-
-/// `x` in [0, max]; NaN counts as 0.
-fn within(x: f64, max: f64) -> f64 {
-    if x > 0.0 { x.min(max) } else { 0.0 }
 }
 
 /// u and z at τ from u₀. Only decaying exponentials and sums of positive terms: nothing overflows or cancels.
@@ -202,6 +222,11 @@ fn motion(c: f64, tau: f64, u0: f64) -> [f64; 2] {
         tau + ops::ln_1p(c * (u0 - 1.0) * passed / b) / c
     };
     [u, z]
+}
+
+/// τ at z from rest for c = 1, arcosh(eᶻ) = z + ln(1 + √(1 − e^(−2z))): nothing overflows or cancels.
+fn quadratic_time_from_rest(z: f64) -> f64 {
+    z + ops::ln_1p(ops::sqrt(-ops::exp_m1(-2.0 * z)))
 }
 
 /// u at z for c = 1, without time.
@@ -255,11 +280,10 @@ fn arrival(c: f64, z: f64, u0: f64) -> [f64; 2] {
 #[must_use]
 #[inline]
 pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32) -> [f32; 2] {
-    let within = |x: f32, min: f32, max: f32| if x > min { x.min(max) } else { min };
-    let v = within(terminal_m_s, 1e-6, 1e3);
-    let c = within(stiffness, 0.01, 10.0);
-    let tau = within(time_s, 0.0, 1e6) * GRAVITY as f32 / v;
-    let u0 = within(initial_m_s / v, 0.0, 1e3);
+    let v = clamped_f32(terminal_m_s, 1e-6, 1e3);
+    let c = clamped_f32(stiffness, 0.01, 10.0);
+    let tau = clamped_f32(time_s, 0.0, 1e6) * GRAVITY as f32 / v;
+    let u0 = clamped_f32(initial_m_s / v, 0.0, 1e3);
     let b = 1.0 + c;
     let passed = -ops::exp_m1f(-b * tau);
     let start = b * (1.0 - passed);
@@ -275,6 +299,26 @@ pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32
     [v * speed, v * v / GRAVITY as f32 * way]
 }
 
+/// Time of a fall from rest under quadratic drag in single precision, t = (v_t/g) arcosh(e^(gz/v_t²)). Units: s.
+///
+/// `terminal_m_s`: m/s, in [1e-6, 1000]; `height_m`: m, in [0, 1e6]; beyond or NaN: the nearest bound.
+///
+/// Error: 4e-7 relative against [`Fall::time_to_fall_s`] with c = 1, over [0, 1e4] m.
+#[must_use]
+#[inline]
+pub fn quadratic_fall_time_f32(terminal_m_s: f32, height_m: f32) -> f32 {
+    let v = clamped_f32(terminal_m_s, 1e-6, 1e3);
+    let g = GRAVITY as f32;
+    let z = g * clamped_f32(height_m, 0.0, 1e6) / (v * v);
+    let tau = if z < 0.05 {
+        // √(2z)(1 + z/6 + z²/120): 1 − e^(−2z) would cancel.
+        (2.0 * z).sqrt() * (1.0 + z * (1.0 / 6.0 + z * (1.0 / 120.0)))
+    } else {
+        z + ops::lnf(1.0 + (1.0 - ops::expf(-2.0 * z)).sqrt())
+    };
+    v / g * tau
+}
+
 /// Speed after a fall from rest under quadratic drag in single precision, v = v_t √(1 − e^(−2gz/v_t²)). Units: m/s.
 ///
 /// `terminal_m_s`: m/s, in [1e-6, 1000]; `height_m`: m, in [0, 1e6]; beyond or NaN: the nearest bound.
@@ -283,7 +327,6 @@ pub fn fall_f32(terminal_m_s: f32, stiffness: f32, time_s: f32, initial_m_s: f32
 #[must_use]
 #[inline]
 pub fn quadratic_speed_after_f32(terminal_m_s: f32, height_m: f32) -> f32 {
-    let within = |x: f32, min: f32, max: f32| if x > min { x.min(max) } else { min };
-    let v = within(terminal_m_s, 1e-6, 1e3);
-    v * (-ops::exp_m1f(-2.0 * GRAVITY as f32 * within(height_m, 0.0, 1e6) / (v * v))).sqrt()
+    let v = clamped_f32(terminal_m_s, 1e-6, 1e3);
+    v * (-ops::exp_m1f(-2.0 * GRAVITY as f32 * clamped_f32(height_m, 0.0, 1e6) / (v * v))).sqrt()
 }

@@ -34,7 +34,8 @@ pub use container::{
 };
 pub use drop_sizes::{DropSizes, MAX_BLEND, RainKind, SizeLaw, UnknownRainKind};
 pub use fall::{
-    Fall, FallState, MAX_FALL_HEIGHT_M, MAX_FALL_TIME_S, drag_stiffness, fall_f32, quadratic_speed_after_f32,
+    Fall, FallState, MAX_FALL_HEIGHT_M, MAX_FALL_TIME_S, drag_stiffness, fall_f32, quadratic_fall_time_f32,
+    quadratic_speed_after_f32,
 };
 pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
 pub use gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};

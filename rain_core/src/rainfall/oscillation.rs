@@ -9,6 +9,7 @@ use core::f64::consts::TAU;
 use super::column::fract;
 use super::shape::DropOutline;
 use crate::constants::{WATER_DENSITY, WATER_KINEMATIC_VISCOSITY, WATER_SURFACE_TENSION};
+use crate::error::clamped_or_f32;
 use crate::ops;
 
 /// Frequency of mode n of a free drop, (1/2π)√(n(n−1)(n+2)σ/(ρ_w a³)), a = D/2. Units: Hz.
@@ -151,7 +152,7 @@ impl Oscillation {
 #[must_use]
 #[inline]
 pub fn oscillating_radius_f32(deflection: f32, cos_theta: f32) -> f32 {
-    let within = |x: f32, max: f32| if x.is_nan() { 0.0 } else { x.clamp(-max, max) };
-    let (delta, x) = (within(deflection, 0.4), within(cos_theta, 1.0));
+    let delta = clamped_or_f32(deflection, -0.4, 0.4, 0.0);
+    let x = clamped_or_f32(cos_theta, -1.0, 1.0, 0.0);
     1.0 - 0.2 * delta * delta + delta * (1.5 * x * x - 0.5)
 }

@@ -9,6 +9,7 @@ use core::f64::consts::PI;
 use glam::{DVec2, Vec2};
 
 use crate::constants::WATER_DENSITY;
+use crate::error::{clamped_or, clamped_or_f32};
 use crate::ops;
 
 /// Largest diameter of the axis-ratio fit; larger drops count as this. Units: mm.
@@ -192,7 +193,7 @@ impl DropOutline {
     /// `amplitudes`: A₂, A₃ in radii, each clamped to [−0.4, 0.4]; NaN counts as 0.
     #[must_use]
     pub fn deformed(&self, amplitudes: [f64; 2]) -> Self {
-        let [second, third] = amplitudes.map(|a| if a.is_nan() { 0.0 } else { a.clamp(-0.4, 0.4) });
+        let [second, third] = amplitudes.map(|a| clamped_or(a, -0.4, 0.4, 0.0));
         let mut coefficients = self.coefficients;
         // P₂ = (1 + 3 cos 2θ)/4, P₃ = (3 cos θ + 5 cos 3θ)/8.
         coefficients[0] += 0.25 * second;
@@ -233,11 +234,7 @@ impl DropOutline {
     #[must_use]
     #[inline]
     pub fn radius_f32(&self, cos_theta: f32) -> f32 {
-        let x = if cos_theta.is_nan() {
-            0.0
-        } else {
-            cos_theta.clamp(-1.0, 1.0)
-        };
+        let x = clamped_or_f32(cos_theta, -1.0, 1.0, 0.0);
         let (mut before, mut now) = (1.0, x);
         let mut sum = self.coefficients_f32[0] + self.coefficients_f32[1] * x;
         for a in &self.coefficients_f32[2..] {
@@ -285,11 +282,7 @@ impl DropOutline {
     #[must_use]
     #[inline]
     pub fn normal_f32(&self, cos_theta: f32) -> Vec2 {
-        let x = if cos_theta.is_nan() {
-            0.0
-        } else {
-            cos_theta.clamp(-1.0, 1.0)
-        };
+        let x = clamped_or_f32(cos_theta, -1.0, 1.0, 0.0);
         let sine = ((1.0 - x) * (1.0 + x)).sqrt();
         let (mut t0, mut t1) = (1.0, x);
         let (mut u0, mut u1) = (0.0, 1.0);
@@ -307,7 +300,7 @@ impl DropOutline {
 }
 
 fn cosine(x: f64) -> f64 {
-    if x.is_nan() { 0.0 } else { x.clamp(-1.0, 1.0) }
+    clamped_or(x, -1.0, 1.0, 0.0)
 }
 
 /// cₙ for D in [0, 6] mm.

@@ -12,6 +12,7 @@ use core::f32::consts::FRAC_PI_4;
 
 use glam::{Vec2, Vec3};
 
+use crate::error::clamped;
 use crate::ops;
 
 /// Way of a drop during the exposure relative to the camera, w T. Units: m.
@@ -21,7 +22,7 @@ use crate::ops;
 /// Error: exact, one product.
 #[must_use]
 pub fn streak_path_m(relative_m_s: f64, exposure_s: f64) -> f64 {
-    clamped(relative_m_s) * clamped(exposure_s)
+    clamped(relative_m_s, 0.0, 1e6) * clamped(exposure_s, 0.0, 1e6)
 }
 
 /// Length of a streak with both ends, w T + D. Units: m. `diameter_mm`: mm, clamped to [0, 1e6]; others as in
@@ -30,7 +31,7 @@ pub fn streak_path_m(relative_m_s: f64, exposure_s: f64) -> f64 {
 /// Error: 1e-15 relative.
 #[must_use]
 pub fn streak_length_m(relative_m_s: f64, exposure_s: f64, diameter_mm: f64) -> f64 {
-    streak_path_m(relative_m_s, exposure_s) + 1e-3 * clamped(diameter_mm)
+    streak_path_m(relative_m_s, exposure_s) + 1e-3 * clamped(diameter_mm, 0.0, 1e6)
 }
 
 /// Opacity on the axis in the middle of a streak, min(1, D/(w T)). Units: none.
@@ -40,7 +41,7 @@ pub fn streak_length_m(relative_m_s: f64, exposure_s: f64, diameter_mm: f64) -> 
 /// Error: 1e-15 relative.
 #[must_use]
 pub fn streak_peak_opacity(diameter_mm: f64, path_m: f64) -> f64 {
-    let (d, path) = (1e-3 * clamped(diameter_mm), clamped(path_m));
+    let (d, path) = (1e-3 * clamped(diameter_mm, 0.0, 1e6), clamped(path_m, 0.0, 1e6));
     if d <= 0.0 {
         0.0
     } else if d >= path {
@@ -239,8 +240,7 @@ pub fn circle_of_confusion_px(aperture_m: f64, focal_px: f64, depth_m: f64, focu
 /// Error: 2e-15 relative, also for tiny α.
 #[must_use]
 pub fn contrast_gain(opacity: f64, gain: f64) -> f64 {
-    let within = |x: f64, max: f64| if x > 0.0 { x.min(max) } else { 0.0 };
-    let (alpha, gain) = (within(opacity, 1.0), within(gain, 32.0));
+    let (alpha, gain) = (clamped(opacity, 0.0, 1.0), clamped(gain, 0.0, 32.0));
     if alpha >= 1.0 {
         return if gain > 0.0 { 1.0 } else { 0.0 };
     }
@@ -262,8 +262,4 @@ pub fn lamp_falloff_per_m2(distance_m: f64, lamp_radius_m: f64) -> f64 {
         1e-3
     };
     1.0 / (d * d + r * r)
-}
-
-fn clamped(x: f64) -> f64 {
-    if x > 0.0 { x.min(1e6) } else { 0.0 }
 }

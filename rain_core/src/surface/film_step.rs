@@ -17,6 +17,7 @@
 //! One texel knows nothing of its neighbours: all water that drains leaves it, and ℓ stands for the flow path. With
 //! ℓ the length of a plane the steady depth is that at its foot.
 
+use crate::error::{clamped, clamped_f32, clamped_or, clamped_or_f32};
 use crate::ops;
 
 const MAX_DEPTH_M: f64 = 1e3;
@@ -24,40 +25,23 @@ const MAX_RAIN_M_S: f64 = 1.0;
 const MAX_DRAIN: f64 = 1e6;
 const MAX_STEP_S: f64 = 1e9;
 
-/// `value` in [0, max]; NaN gives 0.
-fn within(value: f64, max: f64) -> f64 {
-    value.max(0.0).min(max)
-}
-
-/// `value` in [−1, 1] m/s; NaN gives 0.
-fn rain_within(value: f64) -> f64 {
-    if value.is_nan() {
-        0.0
-    } else {
-        value.clamp(-MAX_RAIN_M_S, MAX_RAIN_M_S)
-    }
-}
-
-fn within_f32(value: f32, max: f64) -> f32 {
-    value.max(0.0).min(max as f32)
-}
-
 /// The film after `dt_s` of drain without rain, exactly: (h^(−2/3) + ⅔ k dt)^(−3/2). Units: m.
 /// Error: 3e-12 relative against the differential equation in 20 000 steps.
 #[must_use]
 pub fn drained_film(depth_m: f64, drain: f64, dt_s: f64) -> f64 {
-    let h = within(depth_m, MAX_DEPTH_M);
+    let h = clamped(depth_m, 0.0, MAX_DEPTH_M);
     let c = ops::cbrt(h);
-    let x = 1.0 + 2.0 / 3.0 * within(drain, MAX_DRAIN) * within(dt_s, MAX_STEP_S) * c * c;
+    let x = 1.0 + 2.0 / 3.0 * clamped(drain, 0.0, MAX_DRAIN) * clamped(dt_s, 0.0, MAX_STEP_S) * c * c;
     h / (x * ops::sqrt(x))
 }
 
 /// [`drained_film`] in single precision. Error: 4e-7 relative (or of 1e-36 m).
 #[must_use]
 pub fn drained_film_f32(depth_m: f32, drain: f32, dt_s: f32) -> f32 {
-    let h = within_f32(depth_m, MAX_DEPTH_M);
+    let h = clamped_f32(depth_m, 0.0, MAX_DEPTH_M as f32);
     let c = ops::cbrtf(h);
-    let x = 1.0 + 2.0 / 3.0 * within_f32(drain, MAX_DRAIN) * within_f32(dt_s, MAX_STEP_S) * (c * c);
+    let x = 1.0
+        + 2.0 / 3.0 * clamped_f32(drain, 0.0, MAX_DRAIN as f32) * clamped_f32(dt_s, 0.0, MAX_STEP_S as f32) * (c * c);
     h / (x * x.sqrt())
 }
 
@@ -65,12 +49,12 @@ pub fn drained_film_f32(depth_m: f32, drain: f32, dt_s: f32) -> f32 {
 /// in steps of 5 s, 2.1e-5 in steps of 1 s (see the module); rounding without rain or without drain.
 #[must_use]
 pub fn film_step(depth_m: f64, rain_m_s: f64, drain: f64, dt_s: f64) -> f64 {
-    let dt = within(dt_s, MAX_STEP_S);
-    let half = 0.5 * dt * rain_within(rain_m_s);
-    let wetted = within(within(depth_m, MAX_DEPTH_M) + half, f64::INFINITY);
+    let dt = clamped(dt_s, 0.0, MAX_STEP_S);
+    let half = 0.5 * dt * clamped_or(rain_m_s, -MAX_RAIN_M_S, MAX_RAIN_M_S, 0.0);
+    let wetted = (clamped(depth_m, 0.0, MAX_DEPTH_M) + half).max(0.0);
     let c = ops::cbrt(wetted);
-    let x = 1.0 + 2.0 / 3.0 * within(drain, MAX_DRAIN) * dt * c * c;
-    within(wetted / (x * ops::sqrt(x)) + half, f64::INFINITY)
+    let x = 1.0 + 2.0 / 3.0 * clamped(drain, 0.0, MAX_DRAIN) * dt * c * c;
+    (wetted / (x * ops::sqrt(x)) + half).max(0.0)
 }
 
 /// [`film_step`] in single precision. Error: 6e-7 against it, relative to the water that took part.
@@ -89,17 +73,12 @@ pub fn fast_film_step_f32(depth_m: f32, rain_m_s: f32, drain: f32, dt_s: f32) ->
 
 #[inline]
 fn step_f32(depth_m: f32, rain_m_s: f32, drain: f32, dt_s: f32, cbrt: impl Fn(f32) -> f32) -> f32 {
-    let dt = within_f32(dt_s, MAX_STEP_S);
-    let max_rain = MAX_RAIN_M_S as f32;
-    let rain = if rain_m_s.is_nan() {
-        0.0
-    } else {
-        rain_m_s.clamp(-max_rain, max_rain)
-    };
+    let dt = clamped_f32(dt_s, 0.0, MAX_STEP_S as f32);
+    let rain = clamped_or_f32(rain_m_s, -(MAX_RAIN_M_S as f32), MAX_RAIN_M_S as f32, 0.0);
     let half = 0.5 * dt * rain;
-    let wetted = (within_f32(depth_m, MAX_DEPTH_M) + half).max(0.0);
+    let wetted = (clamped_f32(depth_m, 0.0, MAX_DEPTH_M as f32) + half).max(0.0);
     let c = cbrt(wetted);
-    let x = 1.0 + 2.0 / 3.0 * within_f32(drain, MAX_DRAIN) * dt * (c * c);
+    let x = 1.0 + 2.0 / 3.0 * clamped_f32(drain, 0.0, MAX_DRAIN as f32) * dt * (c * c);
     (wetted / (x * x.sqrt()) + half).max(0.0)
 }
 

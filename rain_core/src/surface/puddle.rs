@@ -34,28 +34,28 @@ impl ParaboloidPuddle {
     /// Error: 1e-15 relative.
     #[must_use]
     pub fn volume_m3(&self, level_m: f64) -> f64 {
-        let h = within(level_m, 1e3);
+        let h = clamped(level_m, 0.0, 1e3);
         0.5 * TWO_PI * self.radius_m * h * h
     }
 
     /// 2 π R_c h. Units: m², level in m. Clamps as [`Self::volume_m3`]. Error: 1e-15 relative.
     #[must_use]
     pub fn area_m2(&self, level_m: f64) -> f64 {
-        TWO_PI * self.radius_m * within(level_m, 1e3)
+        TWO_PI * self.radius_m * clamped(level_m, 0.0, 1e3)
     }
 
     /// Level of a volume, √(V/(π R_c)). Units: m, m³. Negative volumes and NaN count as 0, those above 1e15 m³ as
     /// 1e15 m³. Error: 1e-15 relative.
     #[must_use]
     pub fn level_m(&self, volume_m3: f64) -> f64 {
-        ops::sqrt(within(volume_m3, 1e15) / (0.5 * TWO_PI * self.radius_m))
+        ops::sqrt(clamped(volume_m3, 0.0, 1e15) / (0.5 * TWO_PI * self.radius_m))
     }
 
     /// The level at which inflow and loss balance, Q/(2 π R_c e). Units: m, m³/s, m/s.
     /// `None` without loss (and NaN): it rises for ever, or stays. Cut off at 1e9 m. Error: 1e-15 relative.
     #[must_use]
     pub fn balance_level_m(&self, inflow_m3_s: f64, loss_m_s: f64) -> Option<f64> {
-        (loss_m_s > 0.0).then(|| (within(inflow_m3_s, 1e6) / (TWO_PI * self.radius_m) / loss_m_s).min(1e9))
+        (loss_m_s > 0.0).then(|| (clamped(inflow_m3_s, 0.0, 1e6) / (TWO_PI * self.radius_m) / loss_m_s).min(1e9))
     }
 
     /// The level `time_s` later under a constant inflow and a constant loss per area of water. Units: m, m³/s, m/s, s.
@@ -65,8 +65,8 @@ impl ParaboloidPuddle {
     /// at the same level. Error: 1e-13 relative to the higher of both levels.
     #[must_use]
     pub fn level_after_m(&self, level_m: f64, inflow_m3_s: f64, loss_m_s: f64, time_s: f64) -> f64 {
-        let (h, q) = (within(level_m, 1e3), within(inflow_m3_s, 1e6));
-        let (loss, time) = (within(loss_m_s, 1.0), within(time_s, 1e10));
+        let (h, q) = (clamped(level_m, 0.0, 1e3), clamped(inflow_m3_s, 0.0, 1e6));
+        let (loss, time) = (clamped(loss_m_s, 0.0, 1.0), clamped(time_s, 0.0, 1e10));
         if time == 0.0 {
             return h;
         }
@@ -99,18 +99,13 @@ impl ParaboloidPuddle {
     /// Error: 1e-15 relative.
     #[must_use]
     pub fn drying_time_s(level_m: f64, loss_m_s: f64) -> Option<f64> {
-        let h = within(level_m, 1e3);
+        let h = clamped(level_m, 0.0, 1e3);
         if h == 0.0 {
             Some(0.0)
         } else {
             (loss_m_s > 0.0).then(|| h / loss_m_s.min(1.0))
         }
     }
-}
-
-/// `value` in [0, max]; NaN gives 0.
-fn within(value: f64, max: f64) -> f64 {
-    clamped(value, 0.0, max)
 }
 
 /// s − 1 + e^(−s), without cancellation.

@@ -16,6 +16,7 @@
 //! constant factor 0.3 of the source systems is off by up to 0.68 in albedo (light bodies).
 
 use crate::constants::WATER_IOR;
+use crate::error::{clamped, clamped_f32};
 use crate::optics::fresnel;
 
 /// R̄(1.333), mean of Fresnel's reflectance over a hemisphere of uniform light. Units: none.
@@ -107,12 +108,12 @@ impl WetBody {
 
 /// `x` in [0, 1], NaN gives 0. Without a branch, so that loops over texels are vectorised.
 fn unit(x: f64) -> f64 {
-    if x > 0.0 { x.min(1.0) } else { 0.0 }
+    clamped(x, 0.0, 1.0)
 }
 
 /// [`unit`] in single precision.
 fn unit_f32(x: f32) -> f32 {
-    if x > 0.0 { x.min(1.0) } else { 0.0 }
+    clamped_f32(x, 0.0, 1.0)
 }
 
 /// Albedo of a body soaked with water, by Lekner & Dorf: [`WetBody::albedo`] of [`WetBody::LEKNER_DORF`]. Units: none.

@@ -8,6 +8,7 @@
 //! Clean water: films of oil or soap multiply the damping of short waves. Linear: steep waves run faster by (k a)²/2.
 
 use crate::constants::{GRAVITY, WATER_DENSITY, WATER_KINEMATIC_VISCOSITY, WATER_SURFACE_TENSION};
+use crate::error::{clamped, clamped_f32};
 use crate::ops;
 
 /// Largest wave number. Units: rad/m.
@@ -16,16 +17,6 @@ const MAX_WAVE_NUMBER: f64 = 1e7;
 const MAX_DEPTH_M: f64 = 1e4;
 /// σ/ρ. Units: m³/s².
 const TENSION: f64 = WATER_SURFACE_TENSION / WATER_DENSITY;
-
-/// `x` in [0, max]; NaN is 0.
-fn clamped(x: f64, max: f64) -> f64 {
-    if x > 0.0 { x.min(max) } else { 0.0 }
-}
-
-/// [`clamped`] in single precision.
-fn clamped_f32(x: f32, max: f64) -> f32 {
-    if x > 0.0 { x.min(max as f32) } else { 0.0 }
-}
 
 /// x/sinh x for x ≥ 0: 1 at 0, 0 beyond the range of e^(−x).
 fn over_sinh(x: f64) -> f64 {
@@ -60,13 +51,13 @@ fn tanh_over_f32(x: f32) -> f32 {
 /// Error: relative 3e-16; model: see [`phase_speed`].
 #[must_use]
 pub fn shallow_speed(depth_m: f64) -> f64 {
-    ops::sqrt(GRAVITY * clamped(depth_m, MAX_DEPTH_M))
+    ops::sqrt(GRAVITY * clamped(depth_m, 0.0, MAX_DEPTH_M))
 }
 
 /// [`shallow_speed`] in single precision. Error: relative 3e-7.
 #[must_use]
 pub fn shallow_speed_f32(depth_m: f32) -> f32 {
-    (GRAVITY as f32 * clamped_f32(depth_m, MAX_DEPTH_M)).sqrt()
+    (GRAVITY as f32 * clamped_f32(depth_m, 0.0, MAX_DEPTH_M as f32)).sqrt()
 }
 
 /// Phase speed c = ω/k = √((g + σk²/ρ) tanh(k h)/k). Units: m/s; k in rad/m, h in m, both clamped (see the module).
@@ -74,15 +65,18 @@ pub fn shallow_speed_f32(depth_m: f32) -> f32 {
 /// k → 0 gives √(g h). Error: relative 1e-14; model: linear waves on clean water.
 #[must_use]
 pub fn phase_speed(wave_number: f64, depth_m: f64) -> f64 {
-    let (k, h) = (clamped(wave_number, MAX_WAVE_NUMBER), clamped(depth_m, MAX_DEPTH_M));
+    let (k, h) = (
+        clamped(wave_number, 0.0, MAX_WAVE_NUMBER),
+        clamped(depth_m, 0.0, MAX_DEPTH_M),
+    );
     ops::sqrt((GRAVITY + TENSION * k * k) * h * tanh_over(k * h))
 }
 
 /// [`phase_speed`] in single precision. Error: relative 1e-6.
 #[must_use]
 pub fn phase_speed_f32(wave_number: f32, depth_m: f32) -> f32 {
-    let k = clamped_f32(wave_number, MAX_WAVE_NUMBER);
-    let h = clamped_f32(depth_m, MAX_DEPTH_M);
+    let k = clamped_f32(wave_number, 0.0, MAX_WAVE_NUMBER as f32);
+    let h = clamped_f32(depth_m, 0.0, MAX_DEPTH_M as f32);
     ((GRAVITY as f32 + TENSION as f32 * k * k) * h * tanh_over_f32(k * h)).sqrt()
 }
 
@@ -91,13 +85,13 @@ pub fn phase_speed_f32(wave_number: f32, depth_m: f32) -> f32 {
 /// Error: relative 1e-14.
 #[must_use]
 pub fn wave_frequency(wave_number: f64, depth_m: f64) -> f64 {
-    clamped(wave_number, MAX_WAVE_NUMBER) * phase_speed(wave_number, depth_m)
+    clamped(wave_number, 0.0, MAX_WAVE_NUMBER) * phase_speed(wave_number, depth_m)
 }
 
 /// [`wave_frequency`] in single precision. Error: relative 1e-6.
 #[must_use]
 pub fn wave_frequency_f32(wave_number: f32, depth_m: f32) -> f32 {
-    clamped_f32(wave_number, MAX_WAVE_NUMBER) * phase_speed_f32(wave_number, depth_m)
+    clamped_f32(wave_number, 0.0, MAX_WAVE_NUMBER as f32) * phase_speed_f32(wave_number, depth_m)
 }
 
 /// Group speed dω/dk = ½ c [(1 + 3B)/(1 + B) + 2kh/sinh 2kh], B = σk²/(ρg). Units: m/s; k in rad/m, h in m, both
@@ -106,7 +100,10 @@ pub fn wave_frequency_f32(wave_number: f32, depth_m: f32) -> f32 {
 /// Error: relative 1e-8 against differences of ω.
 #[must_use]
 pub fn group_speed(wave_number: f64, depth_m: f64) -> f64 {
-    let (k, h) = (clamped(wave_number, MAX_WAVE_NUMBER), clamped(depth_m, MAX_DEPTH_M));
+    let (k, h) = (
+        clamped(wave_number, 0.0, MAX_WAVE_NUMBER),
+        clamped(depth_m, 0.0, MAX_DEPTH_M),
+    );
     let bond = TENSION / GRAVITY * k * k;
     0.5 * phase_speed(k, h) * ((1.0 + 3.0 * bond) / (1.0 + bond) + over_sinh(2.0 * k * h))
 }
@@ -114,8 +111,8 @@ pub fn group_speed(wave_number: f64, depth_m: f64) -> f64 {
 /// [`group_speed`] in single precision. Error: relative 2e-6.
 #[must_use]
 pub fn group_speed_f32(wave_number: f32, depth_m: f32) -> f32 {
-    let k = clamped_f32(wave_number, MAX_WAVE_NUMBER);
-    let h = clamped_f32(depth_m, MAX_DEPTH_M);
+    let k = clamped_f32(wave_number, 0.0, MAX_WAVE_NUMBER as f32);
+    let h = clamped_f32(depth_m, 0.0, MAX_DEPTH_M as f32);
     let bond = (TENSION / GRAVITY) as f32 * k * k;
     0.5 * phase_speed_f32(k, h) * ((1.0 + 3.0 * bond) / (1.0 + bond) + over_sinh_f32(2.0 * k * h))
 }
@@ -138,14 +135,14 @@ pub fn minimum_phase_speed() -> (f64, f64) {
 /// Error: relative 1e-15; model: clean surface, waves much longer than √(ν/ω).
 #[must_use]
 pub fn bulk_damping(wave_number: f64) -> f64 {
-    let k = clamped(wave_number, MAX_WAVE_NUMBER);
+    let k = clamped(wave_number, 0.0, MAX_WAVE_NUMBER);
     2.0 * WATER_KINEMATIC_VISCOSITY * k * k
 }
 
 /// [`bulk_damping`] in single precision. Error: relative 4e-7.
 #[must_use]
 pub fn bulk_damping_f32(wave_number: f32) -> f32 {
-    let k = clamped_f32(wave_number, MAX_WAVE_NUMBER);
+    let k = clamped_f32(wave_number, 0.0, MAX_WAVE_NUMBER as f32);
     2.0 * WATER_KINEMATIC_VISCOSITY as f32 * k * k
 }
 
@@ -155,8 +152,8 @@ pub fn bulk_damping_f32(wave_number: f32) -> f32 {
 /// Error: relative 1e-13; model: laminar boundary layer, thin against the depth.
 #[must_use]
 pub fn bottom_damping(wave_number: f64, depth_m: f64) -> f64 {
-    let k = clamped(wave_number, MAX_WAVE_NUMBER);
-    let h = clamped(depth_m, MAX_DEPTH_M).max(1e-5);
+    let k = clamped(wave_number, 0.0, MAX_WAVE_NUMBER);
+    let h = clamped(depth_m, 0.0, MAX_DEPTH_M).max(1e-5);
     let layer = ops::sqrt(0.5 * WATER_KINEMATIC_VISCOSITY * wave_frequency(k, h));
     layer * over_sinh(2.0 * k * h) / (2.0 * h)
 }
@@ -164,8 +161,8 @@ pub fn bottom_damping(wave_number: f64, depth_m: f64) -> f64 {
 /// [`bottom_damping`] in single precision. Error: relative 2e-6, absolute 2e-9 1/s below 1e-3 1/s.
 #[must_use]
 pub fn bottom_damping_f32(wave_number: f32, depth_m: f32) -> f32 {
-    let k = clamped_f32(wave_number, MAX_WAVE_NUMBER);
-    let h = clamped_f32(depth_m, MAX_DEPTH_M).max(1e-5);
+    let k = clamped_f32(wave_number, 0.0, MAX_WAVE_NUMBER as f32);
+    let h = clamped_f32(depth_m, 0.0, MAX_DEPTH_M as f32).max(1e-5);
     let layer = (0.5 * WATER_KINEMATIC_VISCOSITY as f32 * wave_frequency_f32(k, h)).sqrt();
     layer * over_sinh_f32(2.0 * k * h) / (2.0 * h)
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::tyre::Tyre;
 use crate::constants::WATER_DENSITY;
-use crate::error::{clamped, clamped_f32};
+use crate::error::{clamped, clamped_or_f32};
 use crate::hash;
 use crate::ops;
 
@@ -101,11 +101,7 @@ pub struct SprayDroplet {
 /// in double precision. Measured spray scatters by more than these ranges.
 #[must_use]
 pub fn spray_droplet(tyre: &Tyre, mechanism: SprayMechanism, speed_m_s: f32, seed: u32, index: u32) -> SprayDroplet {
-    let speed = if speed_m_s.is_nan() {
-        0.0
-    } else {
-        clamped_f32(speed_m_s, -200.0, 200.0)
-    };
+    let speed = clamped_or_f32(speed_m_s, -200.0, 200.0, 0.0);
     let [a, b, c] = hash::pcg3d([index, seed, mechanism as u32 ^ 0x7370_7279]);
     let [d, e, _] = hash::pcg3d([a ^ 0x9e37_79b9, b, c]);
     let between = |(from, to): (f32, f32), bits: u32| from + (to - from) * hash::unit_f32(bits);

@@ -6,8 +6,8 @@ use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rain_core::rainfall::{
-    Fall, WindResponse, column_drop, drag_stiffness, fall_f32, fract, gust_gain, quadratic_speed_after_f32, relax_f32,
-    response_time_s, slant_rad,
+    Fall, WindResponse, column_drop, drag_stiffness, fall_f32, fract, gust_gain, quadratic_fall_time_f32,
+    quadratic_speed_after_f32, relax_f32, response_time_s, slant_rad,
 };
 use rain_reference::fall as reference;
 use rain_reference::fall_speed::measured;
@@ -320,7 +320,8 @@ proptest! {
 
 #[test]
 fn single_precision_falls_stay_within_2e_6() {
-    let (mut speed, mut way, mut plain) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut speed, mut way, mut plain, mut time) =
+        (Worst::default(), Worst::default(), Worst::default(), Worst::default());
     for terminal in [0.01_f32, 0.72, 4.03, 9.17, 1000.0] {
         for c in [0.02_f32, 0.3, 1.0, 1.25, 10.0] {
             let fall = Fall::new(f64::from(terminal), f64::from(c)).expect("valid");
@@ -336,6 +337,14 @@ fn single_precision_falls_stay_within_2e_6() {
         }
         for height in [0.0_f32, 1e-20, 1e-6, 0.01, 1.0, 5.0, 1e6] {
             let fall = Fall::quadratic(f64::from(terminal)).expect("valid");
+            let place = || format!("v_t {terminal} z {height}");
+            let exact = fall.time_to_fall_s(f64::from(height), 0.0);
+            time.relative(
+                f64::from(quadratic_fall_time_f32(terminal, height)),
+                exact,
+                1e-30,
+                place,
+            );
             plain.relative(
                 f64::from(quadratic_speed_after_f32(terminal, height)),
                 fall.speed_after_m_s(f64::from(height), 0.0),
@@ -347,6 +356,7 @@ fn single_precision_falls_stay_within_2e_6() {
     speed.assert_below(2e-6, 1000);
     way.assert_below(2e-6, 1000);
     plain.assert_below(5e-7, 30);
+    time.assert_below(4e-7, 30);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0] {
         for [v, z] in [
             fall_f32(bad, bad, bad, bad),
@@ -355,7 +365,7 @@ fn single_precision_falls_stay_within_2e_6() {
         ] {
             assert!(v.is_finite() && z.is_finite() && v >= 0.0 && z >= 0.0, "{bad}: {v} {z}");
         }
-        assert!(quadratic_speed_after_f32(bad, bad).is_finite());
+        assert!(quadratic_speed_after_f32(bad, bad).is_finite() && quadratic_fall_time_f32(bad, bad).is_finite());
     }
 }
 

@@ -5,13 +5,9 @@
 //! values from −60 to 60 °C, and independent of pressure.
 
 use crate::constants::{DRY_AIR_GAS_CONSTANT, SEA_LEVEL_PRESSURE_PA, STANDARD_TEMPERATURE_C, ZERO_CELSIUS_K};
+use crate::error::{clamped, clamped_or};
 use crate::ops;
 use crate::weather::saturation_vapour_pressure_pa;
-
-/// `value` held in [min, max]; `other` in place of NaN.
-pub(super) fn held(value: f64, min: f64, max: f64, other: f64) -> f64 {
-    if value.is_nan() { other } else { value.clamp(min, max) }
-}
 
 /// Density of moist air, ρ = (p − 0.378 e)/(287.05 T). Units: kg/m³.
 ///
@@ -21,9 +17,9 @@ pub(super) fn held(value: f64, min: f64, max: f64, other: f64) -> f64 {
 /// Error: 1e-15 against the formula; 0.1 % against nature.
 #[must_use]
 pub fn air_density_kg_m3(pressure_pa: f64, temperature_c: f64, relative_humidity: f64) -> f64 {
-    let p = held(pressure_pa, 1000.0, 120_000.0, SEA_LEVEL_PRESSURE_PA);
-    let t = held(temperature_c, -90.0, 60.0, STANDARD_TEMPERATURE_C);
-    let vapour = held(relative_humidity, 0.0, 1.0, 0.0) * saturation_vapour_pressure_pa(t.max(-60.0));
+    let p = clamped_or(pressure_pa, 1000.0, 120_000.0, SEA_LEVEL_PRESSURE_PA);
+    let t = clamped_or(temperature_c, -90.0, 60.0, STANDARD_TEMPERATURE_C);
+    let vapour = clamped(relative_humidity, 0.0, 1.0) * saturation_vapour_pressure_pa(t.max(-60.0));
     // No more vapour than air: at 1000 Pa a warm saturated volume would be steam.
     (p - 0.378 * vapour.min(p)) / (DRY_AIR_GAS_CONSTANT * (t + ZERO_CELSIUS_K))
 }
@@ -35,7 +31,7 @@ pub fn air_density_kg_m3(pressure_pa: f64, temperature_c: f64, relative_humidity
 /// Error: 1e-15 against the formula; 1 % against nature.
 #[must_use]
 pub fn air_viscosity_pa_s(temperature_c: f64) -> f64 {
-    let t = held(temperature_c, -90.0, 60.0, STANDARD_TEMPERATURE_C);
+    let t = clamped_or(temperature_c, -90.0, 60.0, STANDARD_TEMPERATURE_C);
     let cold = t.min(0.0);
     (1.718 + 0.0049 * t - 1.2e-5 * cold * cold) * 1e-5
 }
@@ -56,7 +52,7 @@ pub fn water_density_kg_m3(temperature_c: f64) -> f64 {
         105.563_02e-9,
         -280.542_53e-12,
     ];
-    let t = held(temperature_c, -30.0, 100.0, STANDARD_TEMPERATURE_C);
+    let t = clamped_or(temperature_c, -30.0, 100.0, STANDARD_TEMPERATURE_C);
     ABOVE.iter().rev().fold(0.0, |sum, c| sum * t + c) / (1.0 + 16.879_850e-3 * t)
 }
 
@@ -67,7 +63,7 @@ pub fn water_density_kg_m3(temperature_c: f64) -> f64 {
 /// Error: 1e-15 against the formula; 0.5 % against nature from 0 to 40 °C.
 #[must_use]
 pub fn water_surface_tension_n_m(temperature_c: f64) -> f64 {
-    0.0761 - 1.55e-4 * held(temperature_c, -60.0, 60.0, STANDARD_TEMPERATURE_C)
+    0.0761 - 1.55e-4 * clamped_or(temperature_c, -60.0, 60.0, STANDARD_TEMPERATURE_C)
 }
 
 /// Pressure and temperature of the standard atmosphere.
@@ -87,7 +83,7 @@ impl StandardAtmosphere {
     /// Error: 2e-15 against the formula; weather moves pressure by 5 % and temperature by tens of degrees.
     #[must_use]
     pub fn at(height_m: f64) -> Self {
-        let h = held(height_m, -500.0, 11_000.0, 0.0);
+        let h = clamped_or(height_m, -500.0, 11_000.0, 0.0);
         Self {
             pressure_pa: SEA_LEVEL_PRESSURE_PA * ops::pow(1.0 - 0.0065 * h / 288.15, 5.255_88),
             temperature_c: 15.0 - 0.0065 * h,

@@ -5,9 +5,9 @@
 //! each range elsewhere. Dry air, water at the air's temperature (Kell 1975); the pieces meet within 0.002 m/s at 1.07
 //! mm and 2e-5 m/s at 19 µm.
 
-use super::air::{air_density_kg_m3, air_viscosity_pa_s, held, water_density_kg_m3, water_surface_tension_n_m};
+use super::air::{air_density_kg_m3, air_viscosity_pa_s, water_density_kg_m3, water_surface_tension_n_m};
 use crate::constants::{AIR_DENSITY, GRAVITY, SEA_LEVEL_PRESSURE_PA, STANDARD_TEMPERATURE_C, ZERO_CELSIUS_K};
-use crate::error::{ConfigError, in_range};
+use crate::error::{ConfigError, clamped, in_range};
 use crate::ops;
 
 /// Diameter up to which a drop falls in Stokes' way with slip. Units: mm.
@@ -139,7 +139,7 @@ impl BeardAir {
     /// Error: 1e-11 relative against the formulas in SI; 2 % against Gunn & Kinzer's measurements at sea level.
     #[must_use]
     pub fn terminal_velocity(&self, diameter_mm: f64) -> f64 {
-        let d = held(diameter_mm, 0.0, MAX_BEARD_DIAMETER_MM, 0.0);
+        let d = clamped(diameter_mm, 0.0, MAX_BEARD_DIAMETER_MM);
         if d < SMALL_MM {
             return self.stokes * d * (d + self.slip_mm);
         }
@@ -187,7 +187,7 @@ impl BeardAir {
     /// 101 kPa, 0 to 30 °C.
     #[must_use]
     pub fn velocity_factor(&self, diameter_mm: f64) -> f64 {
-        let d = held(diameter_mm, 0.0, MAX_BEARD_DIAMETER_MM, 0.0);
+        let d = clamped(diameter_mm, 0.0, MAX_BEARD_DIAMETER_MM);
         let by_density = 0.2371 + 0.0231 * d + 0.085 * d.min(1.5);
         let by_viscosity = 0.2211 + 0.3609 * ops::exp(-d);
         ops::exp(by_density * self.ln_density_ratio - by_viscosity * self.ln_viscosity_ratio)

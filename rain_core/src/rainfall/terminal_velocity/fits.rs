@@ -7,8 +7,9 @@
 //! Each function's `Error:` gives its rms and largest distance from Gunn & Kinzer's 30 entries with D ≥ 0.5 mm.
 
 use super::MAX_FITTED_DIAMETER_MM;
-use super::air::{air_viscosity_pa_s, held};
+use super::air::air_viscosity_pa_s;
 use crate::constants::{AIR_DENSITY, GRAVITY, WATER_DENSITY};
+use crate::error::clamped;
 use crate::ops;
 
 /// Largest drop that the laws without an upper end of their own accept. Units: mm.
@@ -36,7 +37,7 @@ const FOOTE_DU_TOIT: [f64; 10] = [
 /// Error: 1e-11 m/s against the printed formula; rms 0.015, at most 0.033 m/s.
 #[must_use]
 pub fn foote_du_toit(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, MAX_FITTED_DIAMETER_MM, 0.0);
+    let d = clamped(diameter_mm, 0.0, MAX_FITTED_DIAMETER_MM);
     FOOTE_DU_TOIT.iter().rev().fold(0.0, |sum, c| sum * d + c).max(0.0)
 }
 
@@ -47,7 +48,7 @@ pub fn foote_du_toit(diameter_mm: f64) -> f64 {
 /// Error: 1e-11 m/s against the printed formula; rms 0.033, at most 0.078 m/s.
 #[must_use]
 pub fn brandes(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, 6.0, 0.0);
+    let d = clamped(diameter_mm, 0.0, 6.0);
     (-0.1021 + d * (4.932 + d * (-0.9551 + d * (0.079_34 - d * 0.002_362)))).max(0.0)
 }
 
@@ -58,7 +59,7 @@ pub fn brandes(diameter_mm: f64) -> f64 {
 /// Error: 1e-11 m/s against the printed formula; rms 0.082, at most 0.163 m/s.
 #[must_use]
 pub fn atlas(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, LARGEST_MM, 0.0);
+    let d = clamped(diameter_mm, 0.0, LARGEST_MM);
     (9.65 - 10.3 * ops::exp(-0.6 * d)).max(0.0)
 }
 
@@ -69,7 +70,7 @@ pub fn atlas(diameter_mm: f64) -> f64 {
 /// Error: 1e-11 m/s against the printed formula; rms 0.187, at most 0.255 m/s.
 #[must_use]
 pub fn best(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, LARGEST_MM, 0.0);
+    let d = clamped(diameter_mm, 0.0, LARGEST_MM);
     -9.32 * ops::exp_m1(-ops::pow(d / 1.77, 1.147))
 }
 
@@ -81,7 +82,7 @@ pub fn best(diameter_mm: f64) -> f64 {
 /// show by how much.
 #[must_use]
 pub fn weber(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, LARGEST_MM, 0.0);
+    let d = clamped(diameter_mm, 0.0, LARGEST_MM);
     200.0 * ops::sqrt(d / 2000.0)
 }
 
@@ -92,7 +93,7 @@ pub fn weber(diameter_mm: f64) -> f64 {
 /// Error: 1e-11 m/s against the printed formula; rms 1.212, at most 3.104 m/s.
 #[must_use]
 pub fn atlas_ulbrich(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, LARGEST_MM, 0.0);
+    let d = clamped(diameter_mm, 0.0, LARGEST_MM);
     3.78 * ops::pow(d, 0.67)
 }
 
@@ -105,7 +106,7 @@ pub fn atlas_ulbrich(diameter_mm: f64) -> f64 {
 /// drops flatten, its spheres do not.
 #[must_use]
 pub fn yoshida(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, LARGEST_MM, 0.0) * 1e-3;
+    let d = clamped(diameter_mm, 0.0, LARGEST_MM) * 1e-3;
     if d <= 0.0 {
         return 0.0;
     }
@@ -130,6 +131,6 @@ pub fn yoshida(diameter_mm: f64) -> f64 {
 /// at 4.03 m/s.
 #[must_use]
 pub fn stokes(diameter_mm: f64) -> f64 {
-    let d = held(diameter_mm, 0.0, LARGEST_MM, 0.0) * 1e-3;
+    let d = clamped(diameter_mm, 0.0, LARGEST_MM) * 1e-3;
     GRAVITY * d * d * (WATER_DENSITY - AIR_DENSITY) / (18.0 * air_viscosity_pa_s(20.0))
 }

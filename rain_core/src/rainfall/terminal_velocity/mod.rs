@@ -19,6 +19,9 @@ pub use fall_law::{FallLaw, UnknownFallLaw};
 pub use gunn_kinzer::{GUNN_KINZER, gunn_kinzer};
 pub use speed_table::SpeedTable;
 
+use crate::constants::AIR_DENSITY;
+use crate::error::{clamped, clamped_or};
+
 /// Coefficients of the least-squares fit to Gunn & Kinzer 1949 in t = D/3 − 1, D in mm, v in m/s.
 pub(super) const FIT: [f64; 9] = [
     2.689_075,
@@ -90,8 +93,8 @@ pub fn terminal_velocity_f32(diameter_mm: f32) -> f32 {
 /// [`BeardAir::velocity_factor`] is better.
 #[must_use]
 pub fn density_factor(diameter_mm: f64, air_density: f64) -> f64 {
-    let d = air::held(diameter_mm, 0.0, MAX_BEARD_DIAMETER_MM, 0.0);
-    let ratio = crate::constants::AIR_DENSITY / air::held(air_density, 0.3, 2.0, crate::constants::AIR_DENSITY);
+    let d = clamped(diameter_mm, 0.0, MAX_BEARD_DIAMETER_MM);
+    let ratio = AIR_DENSITY / clamped_or(air_density, 0.3, 2.0, AIR_DENSITY);
     crate::ops::pow(ratio, 0.375 + 0.025 * d)
 }
 

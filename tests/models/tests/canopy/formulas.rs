@@ -293,8 +293,8 @@ fn places_of_a_ring_are_spread_evenly_over_it() {
 fn falls_are_the_hyperbolic_ones_over_the_whole_domain() {
     let (mut time, mut way, mut crest) = (Worst::default(), Worst::default(), Worst::default());
     let (mut time_f32, mut way_f32) = (Worst::default(), Worst::default());
-    for v in [1e-3, 0.05, 0.5, 2.0, 4.0, 9.2, 40.0, 1e3] {
-        for i in -60..=45 {
+    for v in [1e-6, 1e-3, 0.05, 0.5, 2.0, 4.0, 9.2, 40.0, 1e3] {
+        for i in -60..=30 {
             let x = 10_f64.powf(0.2 * f64::from(i));
             let place = || format!("{x} at {v} m/s");
             time.relative(drip_fall_time_s(x, v), reference::drip_time(x, v), 1e-300, place);
@@ -308,7 +308,7 @@ fn falls_are_the_hyperbolic_ones_over_the_whole_domain() {
                 place,
             );
             let expected = reference::drip_way(wide, terminal);
-            way_f32.relative(f64::from(drip_distance_m_f32(x32, v32)), expected, v * v / 9.8, place);
+            way_f32.relative(f64::from(drip_distance_m_f32(x32, v32)), expected, 1e-30, place);
         }
     }
     for distance in [0.0, 0.3, 2.0, 15.0] {
@@ -325,7 +325,7 @@ fn falls_are_the_hyperbolic_ones_over_the_whole_domain() {
     time.assert_below(1e-15, 800);
     way.assert_below(1e-15, 800);
     time_f32.assert_below(4e-7, 800);
-    way_f32.assert_below(1e-6, 800);
+    way_f32.assert_below(2e-6, 800);
     crest.assert_below(1e-7, 48);
 }
 
