@@ -109,8 +109,8 @@ struct LevelMapParams {
 struct WaterLook {
     // Absorption of the water, 1/m; w: strength of the ripples, 0 for none.
     absorption: vec4<f32>,
-    // Albedo of what is suspended in it; w: its scattering, 1/m.
-    suspended: vec4<f32>,
+    // Albedo of its mud; w: turbidity, 1/m.
+    mud: vec4<f32>,
     // Wind waves. x: mean square slope on open water, y: 1 / length of the longest, 1/m, z, w: direction times speed,
     // m/s.
     ambient: vec4<f32>,

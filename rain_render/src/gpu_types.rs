@@ -86,7 +86,7 @@ pub struct LevelMapParams {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
 pub struct WaterLook {
     pub absorption: [f32; 4],
-    pub suspended: [f32; 4],
+    pub mud: [f32; 4],
     pub ambient: [f32; 4],
     pub ripples: [f32; 4],
     pub waves: [f32; 4],
@@ -187,7 +187,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, pad),
-        layout!(WaterLook: absorption, suspended, ambient, ripples, waves),
+        layout!(WaterLook: absorption, mud, ambient, ripples, waves),
         layout!(ReflectionParams: clip_from_eye, eye),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, reflection),
         layout!(MaskView: eye_from_clip, screen, surface),

@@ -31,6 +31,8 @@ pub(super) struct Surroundings {
     /// The last flood that found no rain, and the cell it started from.
     flooded: Option<BTreeSet<[i32; 3]>>,
     start: IVec3,
+    /// The cell from which the last flood found rain: until something changes, it finds it again.
+    open: Option<IVec3>,
     /// What moved lately: left out of the walls until it stands still.
     moving: BTreeSet<u64>,
 }
@@ -89,6 +91,9 @@ pub(super) fn judge_air(
     }
     let Some(cover) = &s.cover else { return };
     let cell = cell_of(eye);
+    if s.open == Some(cell) {
+        return;
+    }
     let same_place = (cell - s.start).abs().max_element() <= SAME_PLACE;
     if let Some(flooded) = &s.flooded
         && same_place
@@ -102,9 +107,13 @@ pub(super) fn judge_air(
     // Without an answer for a point, rain counts as reaching it.
     let reached = |p| !cover.covered(p, inverse_speed).unwrap_or(false);
     s.start = cell;
+    s.open = None;
     s.flooded = match s.air.flood(eye, range, reached) {
         Air::ClosedIn(cells) => Some(cells),
-        Air::Open => None,
+        Air::Open => {
+            s.open = Some(cell);
+            None
+        }
     };
     judged.closed_in = s.flooded.is_some().then_some(view);
 }
@@ -186,5 +195,6 @@ fn take_in(
     if changed {
         cover.update();
         s.flooded = None;
+        s.open = None;
     }
 }

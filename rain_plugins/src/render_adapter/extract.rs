@@ -139,10 +139,7 @@ fn water_look(appearance: &WaterAppearance, surface: &SurfaceState) -> WaterLook
             .absorption_per_m
             .extend(appearance.ripple_strength)
             .to_array(),
-        suspended: appearance
-            .suspended_albedo
-            .extend(appearance.turbidity_per_m)
-            .to_array(),
+        mud: appearance.mud_albedo.extend(appearance.turbidity_per_m).to_array(),
         ambient: [
             variance * square,
             1.0 / appearance.wave_length_m,
@@ -180,7 +177,7 @@ pub(super) fn extract_rain(
         .iter()
         .max_by(|(a, _), (b, _)| a.illuminance.total_cmp(&b.illuminance));
     let (images, levels, appearance, mirror) = &*water;
-    // What does not validate looks like clear water.
+    // What does not validate has been named in the log.
     let appearance = appearance.as_ref().and_then(|a| a.validated().ok()).unwrap_or_default();
     commands.insert_resource(ExtractedRainScene {
         cover: map.as_ref().map(|map| ExtractedCover {
@@ -205,7 +202,7 @@ pub(super) fn extract_rain(
             }),
             levels: levels
                 .as_ref()
-                .filter(|l| l.is_valid() && !l.levels_m.is_empty())
+                .filter(|l| l.is_valid() && l.any_water())
                 .map(|l| (**l).clone()),
             mirror: mirror.as_ref().and_then(|m| m.view),
             mirror_strength: appearance.reflection_strength,

@@ -69,10 +69,17 @@ impl FromWorld for RainGpu {
     }
 }
 
+/// All levels of a texture. Units: bytes.
+fn texture_bytes(texture: &wgpu::Texture) -> usize {
+    let texel = texture.format().block_copy_size(None).unwrap_or(4) as usize;
+    let level = |i: u32| (texture.width() >> i).max(1) as usize * (texture.height() >> i).max(1) as usize;
+    (0..texture.mip_level_count()).map(level).sum::<usize>() * texel
+}
+
 fn upload_levels(queue: &RenderQueue, levels: &WaterLevels, texture: &wgpu::Texture) {
     queue.write_texture(
         texture.as_image_copy(),
-        bytemuck::cast_slice(&levels.levels_m),
+        bytemuck::cast_slice(levels.levels_m()),
         wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(4 * levels.cells.x),
@@ -192,10 +199,10 @@ pub(super) fn prepare_rain(
     if let Some((levels, image)) = scene.surface.as_ref().and_then(|s| {
         let image = images.get(s.images.as_ref()?.levels)?;
         Some((s.levels.as_ref()?, image))
-    }) && gpu.levels_version != Some(levels.version)
+    }) && gpu.levels_version != Some(levels.version())
     {
         upload_levels(&queue, levels, &image.texture);
-        gpu.levels_version = Some(levels.version);
+        gpu.levels_version = Some(levels.version());
     }
     if let Some(surface) = scene.surface.as_ref().filter(|s| s.wet)
         && let Some(buffer) = buffers.get(surface.buffer)
@@ -276,8 +283,13 @@ pub(super) fn prepare_rain(
         let slot = gpu.views.entry(entity).or_insert_with(|| RainfallViewGpu::new(device));
         slot.prepare(device, &queue, &gpu.rainfall, &input, textures);
     }
-    let cover_bytes = cover_image.map_or(0, |i| {
-        i.texture_descriptor.size.width as usize * i.texture_descriptor.size.height as usize * 4
-    });
-    report.gpu_memory(cover_bytes + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>());
+    let water = scene.surface.as_ref().and_then(|s| s.images);
+    let water = water.iter().flat_map(|i| [i.levels, i.ripples, i.waves, i.reflection]);
+    let textures = water.chain(cover.map(|c| c.image)).filter_map(|id| images.get(id));
+    let tiles = [&gpu.ripple_tile, &gpu.wave_tile].into_iter().flatten();
+    report.gpu_memory(
+        textures.map(|image| texture_bytes(&image.texture)).sum::<usize>()
+            + tiles.map(|tile| tile.memory_bytes() as usize).sum::<usize>()
+            + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>(),
+    );
 }

@@ -42,10 +42,8 @@ pub(super) fn follow_ground(
     let built = ground.as_ref().and_then(|g| Some((g.ground()?, g.rebuilds())));
     let Some((ground, builds)) = built else {
         if shown.shown.take().is_some() {
-            *levels = WaterLevels {
-                version: levels.version + 1,
-                ..default()
-            };
+            levels.cells = UVec2::ZERO;
+            levels.set_levels(Vec::new());
         }
         return;
     };
@@ -72,22 +70,21 @@ pub(super) fn follow_ground(
     shown.shown = Some(now);
     all.resize(nx * nz, NO_WATER_M);
     ground.levels(&mut all);
-    let cut = |values: &[f32]| -> Arc<Vec<f32>> {
+    let cut = |values: &[f32]| -> Vec<f32> {
         let row = |z: usize| {
             let start = (first_z as usize + z) * nx + first_x as usize;
             values[start..start + columns as usize].iter().copied()
         };
-        Arc::new((0..rows as usize).flat_map(row).collect())
+        (0..rows as usize).flat_map(row).collect()
     };
-    levels.levels_m = cut(&all);
     if !same_place {
-        levels.ground_m = cut(ground.ground_heights());
+        levels.ground_m = Arc::new(cut(ground.ground_heights()));
         levels.corner_m = corner + first.as_dvec2() * cell_m;
         levels.cell_m = cell_m;
         levels.cells = UVec2::new(columns, rows);
         levels.base_m = ground.base_height_m();
     }
-    levels.version += 1;
+    levels.set_levels(cut(&all));
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
+use super::dynamic::{OwnWetness, give_own_wetness};
 use super::geometry::{HandedOver, MovesInRain, hand_over};
 use super::ground::{LevelsFromGround, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
@@ -112,6 +113,8 @@ impl Plugin for WetSurfacePlugin {
             .add_systems(
                 PostUpdate,
                 (
+                    give_own_wetness,
+                    check_appearance.run_if(resource_changed::<WaterAppearance>),
                     (follow_weather, follow_ground, aim_mirror)
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
@@ -138,6 +141,13 @@ impl Plugin for WetSurfacePlugin {
                     .in_set(RainViewSystems::Surfaces)
                     .run_if(resource_exists::<CoverField>.and_then(resource_exists::<SurfaceScene>)),
             );
+    }
+}
+
+/// Settings outside their domain are named; until they are mended, water looks as by default.
+fn check_appearance(appearance: Res<WaterAppearance>) {
+    if let Err(error) = appearance.validated() {
+        error!("water looks as by default: {error}");
     }
 }
 
@@ -181,6 +191,7 @@ struct Wettable {
     wetting: Option<&'static SurfaceWetting>,
     paint: Option<&'static PuddlePaint>,
     noise: Option<&'static NoisePuddles>,
+    own: Option<&'static OwnWetness>,
 }
 
 /// Gives every mesh that has none a wet copy of its material.
@@ -220,7 +231,8 @@ fn wet_meshes(
         // What does not validate counts as absent.
         let paint = mesh.paint.and_then(|p| p.validated().map_err(&mut refuse).ok());
         let noise = mesh.noise.and_then(|n| n.validated().map_err(&mut refuse).ok());
-        let wetting = mesh.wetting.copied().unwrap_or_default().uniform();
+        let mut wetting = mesh.wetting.copied().unwrap_or_default().uniform();
+        wetting.z = f32::from(u8::from(mesh.own.is_some()));
         let [paint_uniform, paint_flags] = paint.map_or([Vec4::ZERO; 2], PuddlePaint::uniform);
         let [noise_uniform, noise_flags] = noise.map_or([Vec4::ZERO; 2], NoisePuddles::uniform);
         let painted = paint.and_then(PuddlePaint::texture);
@@ -262,7 +274,12 @@ fn follow_settings(
         (Entity, &DryMaterial),
         (
             With<MeshMaterial3d<WetMaterial>>,
-            Or<(Changed<SurfaceWetting>, Changed<PuddlePaint>, Changed<NoisePuddles>)>,
+            Or<(
+                Changed<SurfaceWetting>,
+                Changed<PuddlePaint>,
+                Changed<NoisePuddles>,
+                Added<OwnWetness>,
+            )>,
         ),
     >,
 ) {

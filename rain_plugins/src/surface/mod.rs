@@ -4,6 +4,7 @@
 //! given an extended copy that reads the cover map and the weather's wetness; when all has dried the originals return.
 //! Changes that the app makes to the originals meanwhile are followed.
 
+mod dynamic;
 mod geometry;
 mod ground;
 mod materials;
@@ -12,6 +13,7 @@ mod reflection;
 mod state;
 mod water;
 
+pub use dynamic::OwnWetness;
 pub use geometry::MovesInRain;
 pub(crate) use geometry::triangles_of;
 pub use ground::LevelsFromGround;

@@ -8,7 +8,7 @@ use bevy::math::Vec3A;
 use bevy::prelude::*;
 
 use super::state::SurfaceState;
-use super::water::{NO_WATER_M, WaterAppearance, WaterLevels};
+use super::water::{WaterAppearance, WaterLevels};
 use crate::rainfall::RainView;
 use crate::render_adapter::{mirror_camera, reflection_target};
 use crate::report::{PassName, RainReport, SkipReason};
@@ -90,12 +90,10 @@ const REACH_M: f32 = 30.0;
 fn water_ahead(levels: &WaterLevels, eye: Vec3, forward: Vec3) -> Option<f32> {
     let flat = forward.with_y(0.0).normalize_or_zero();
     let (mut sum, mut weights) = (0.0, 0.0);
-    for (i, &level) in levels.levels_m.iter().enumerate().filter(|(_, l)| **l > NO_WATER_M) {
-        let (column, row) = (i % levels.cells.x as usize, i / levels.cells.x as usize);
-        let at = levels.corner_m + (bevy::math::DVec2::new(column as f64, row as f64) + 0.5) * levels.cell_m;
+    for (at, level) in levels.pools() {
         let to = Vec3::new(at.x as f32 - eye.x, 0.0, at.y as f32 - eye.z);
         let distance = to.length();
-        let height = (levels.base_m + f64::from(level)) as f32;
+        let height = level as f32;
         if distance > REACH_M || to.dot(flat) < 0.5 * distance || height > eye.y - 0.1 {
             continue;
         }

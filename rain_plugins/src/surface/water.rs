@@ -5,18 +5,19 @@ use std::sync::Arc;
 use bevy::math::DVec2;
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
+use rain_core::surface::Water;
 use rain_render::waves::water_depth_m;
 
 /// How water on the ground looks. Edit it at any time.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Resource, Default)]
 pub struct WaterAppearance {
-    /// Absorption of red, green and blue. Units: 1/m. Domain: [0, 1000]. Default: clear water (0.35, 0.07, 0.02).
+    /// Absorption of red, green and blue. Units: 1/m. Domain: [0, 1e4]. Default: that of [`Water::CLEAR`].
     pub absorption_per_m: Vec3,
-    /// Albedo of what is suspended in the water. Domain: [0, 1]. Default: loam (0.30, 0.22, 0.13).
-    pub suspended_albedo: Vec3,
-    /// Scattering by what is suspended: 0 clear, 5 a street's puddle, 200 a muddy one. Units: 1/m. Domain: [0, 1e4].
-    /// Default: 5.
+    /// Albedo of mud too thick to see through. Domain: [0, 1]. Default: loam (0.30, 0.22, 0.13).
+    pub mud_albedo: Vec3,
+    /// Light lost to scattering by mud: 0 clear, 5 a street's puddle, 40 a muddy road ([`Water::MUDDY`]). Units: 1/m.
+    /// Domain: [0, 1e4]. Default: 5.
     pub turbidity_per_m: f32,
     /// Multiple of the wind's waves. Domain: [0, 4]. Default: 1.
     pub wave_strength: f32,
@@ -33,8 +34,8 @@ pub struct WaterAppearance {
 impl Default for WaterAppearance {
     fn default() -> Self {
         Self {
-            absorption_per_m: Vec3::new(0.35, 0.07, 0.02),
-            suspended_albedo: Vec3::new(0.30, 0.22, 0.13),
+            absorption_per_m: Water::CLEAR.absorption_per_m.map(|a| a as f32).into(),
+            mud_albedo: Vec3::new(0.30, 0.22, 0.13),
             turbidity_per_m: 5.0,
             wave_strength: 1.0,
             wave_length_m: 0.25,
@@ -51,51 +52,22 @@ impl WaterAppearance {
     /// # Errors
     /// Names the first field that is not finite or outside its domain.
     pub fn validated(self) -> Result<Self, ConfigError> {
+        Water {
+            absorption_per_m: self.absorption_per_m.to_array().map(f64::from),
+            turbidity_per_m: f64::from(self.turbidity_per_m),
+            mud_albedo: self.mud_albedo.to_array().map(f64::from),
+        }
+        .validated()?;
         let velocity = self.wave_velocity_m_s.unwrap_or_default();
-        let fields = [
-            (
-                "absorption_per_m",
-                &self.absorption_per_m.to_array()[..],
-                0.0,
-                1e3,
-                "0 to 1000 1/m",
-            ),
-            (
-                "suspended_albedo",
-                &self.suspended_albedo.to_array()[..],
-                0.0,
-                1.0,
-                "0 to 1",
-            ),
-            (
-                "turbidity_per_m",
-                &[self.turbidity_per_m][..],
-                0.0,
-                1e4,
-                "0 to 10000 1/m",
-            ),
-            ("wave_strength", &[self.wave_strength][..], 0.0, 4.0, "0 to 4"),
-            ("wave_length_m", &[self.wave_length_m][..], 0.02, 10.0, "0.02 to 10 m"),
-            (
-                "wave_velocity_m_s",
-                &velocity.to_array()[..],
-                -10.0,
-                10.0,
-                "-10 to 10 m/s",
-            ),
-            ("ripple_strength", &[self.ripple_strength][..], 0.0, 4.0, "0 to 4"),
-            (
-                "reflection_strength",
-                &[self.reflection_strength][..],
-                0.0,
-                1.0,
-                "0 to 1",
-            ),
-        ];
-        for (name, values, low, high, allowed) in fields {
-            for &value in values {
-                in_range(name, f64::from(value), low, high, allowed)?;
-            }
+        for (name, value, low, high, allowed) in [
+            ("wave_strength", self.wave_strength, 0.0, 4.0, "0 to 4"),
+            ("wave_length_m", self.wave_length_m, 0.02, 10.0, "0.02 to 10 m"),
+            ("wave_velocity_m_s", velocity.x, -10.0, 10.0, "-10 to 10 m/s"),
+            ("wave_velocity_m_s", velocity.y, -10.0, 10.0, "-10 to 10 m/s"),
+            ("ripple_strength", self.ripple_strength, 0.0, 4.0, "0 to 4"),
+            ("reflection_strength", self.reflection_strength, 0.0, 1.0, "0 to 1"),
+        ] {
+            in_range(name, f64::from(value), low, high, allowed)?;
         }
         Ok(self)
     }
@@ -130,13 +102,13 @@ pub struct WaterLevels {
     pub cells: UVec2,
     /// World height of level 0. Units: m.
     pub base_m: f64,
-    /// Level of each cell above `base_m`, row after row (z), or [`NO_WATER_M`]. Units: m. A pool's level should reach
-    /// one cell beyond its shore.
-    pub levels_m: Arc<Vec<f32>>,
+    levels_m: Arc<Vec<f32>>,
+    /// Cells with water, in order.
+    wet: Arc<Vec<u32>>,
     /// Height of the ground in each cell above `base_m`, for the depth of waves; may be empty. Units: m.
     pub ground_m: Arc<Vec<f32>>,
     /// Counts changes: a new number is uploaded.
-    pub version: u64,
+    version: u64,
 }
 
 impl Default for WaterLevels {
@@ -147,6 +119,7 @@ impl Default for WaterLevels {
             cells: UVec2::ZERO,
             base_m: 0.0,
             levels_m: Arc::default(),
+            wet: Arc::default(),
             ground_m: Arc::default(),
             version: 0,
         }
@@ -154,6 +127,12 @@ impl Default for WaterLevels {
 }
 
 impl WaterLevels {
+    /// Counts changes.
+    #[must_use]
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
     /// Whether the cells fit the texture and the levels fit the cells.
     #[must_use]
     pub fn is_valid(&self) -> bool {
@@ -203,10 +182,34 @@ impl WaterLevels {
         water_depth_m(f64::from(level), near * (1.0 - t.y) + far * t.y)
     }
 
+    /// Level of each cell above `base_m`. Units: m.
+    #[must_use]
+    pub fn levels_m(&self) -> &Arc<Vec<f32>> {
+        &self.levels_m
+    }
+
+    /// Replaces all levels: one for each cell, row after row (z), above `base_m`, or [`NO_WATER_M`]. Units: m. A pool's
+    /// level should reach one cell beyond its shore.
+    pub fn set_levels(&mut self, levels_m: Vec<f32>) {
+        let cells = (0..).zip(&levels_m).filter(|(_, level)| **level > NO_WATER_M);
+        self.wet = Arc::new(cells.map(|(cell, _)| cell).collect());
+        self.levels_m = Arc::new(levels_m);
+        self.version += 1;
+    }
+
     /// Whether any cell holds water.
     #[must_use]
     pub fn any_water(&self) -> bool {
-        self.levels_m.iter().any(|&l| l > NO_WATER_M)
+        !self.wet.is_empty()
+    }
+
+    /// World place (x, z) and level of every cell with water. Units: m.
+    pub fn pools(&self) -> impl Iterator<Item = (DVec2, f64)> {
+        self.wet.iter().map(|&cell| {
+            let (column, row) = (cell % self.cells.x.max(1), cell / self.cells.x.max(1));
+            let place = self.corner_m + (UVec2::new(column, row).as_dvec2() + 0.5) * self.cell_m;
+            (place, self.base_m + f64::from(self.levels_m[cell as usize]))
+        })
     }
 }
 
@@ -231,8 +234,8 @@ mod tests {
     fn each_setting_is_checked_and_named() {
         type Set = fn(&mut WaterAppearance, f32);
         let fields: [(&str, Set, [f32; 2]); 8] = [
-            ("absorption_per_m", |w, v| w.absorption_per_m.y = v, [-0.1, 1001.0]),
-            ("suspended_albedo", |w, v| w.suspended_albedo.z = v, [-0.1, 1.1]),
+            ("absorption_per_m", |w, v| w.absorption_per_m.y = v, [-0.1, 2e4]),
+            ("mud_albedo", |w, v| w.mud_albedo.z = v, [-0.1, 1.1]),
             ("turbidity_per_m", |w, v| w.turbidity_per_m = v, [-1.0, 2e4]),
             ("wave_strength", |w, v| w.wave_strength = v, [-0.1, 5.0]),
             ("wave_length_m", |w, v| w.wave_length_m = v, [0.0, 11.0]),

@@ -109,10 +109,10 @@ pub(super) fn move_water(
     waves.tile.follow(place, depth);
     let stale = waves
         .filled
-        .is_none_or(|(version, at)| version != levels.version && now.saturating_sub(at) >= REFILL_NS);
+        .is_none_or(|(version, at)| version != levels.version() && now.saturating_sub(at) >= REFILL_NS);
     if stale {
         waves.tile.refill(depth);
-        waves.filled = Some((levels.version, now));
+        waves.filled = Some((levels.version(), now));
     }
     // At most as many as are taken, each checked: nothing is refused.
     let _ = waves.tile.advance(elapsed, &waves.disturbances);

@@ -34,12 +34,31 @@ fn rain_shift_in_pixels(shift: vec2<f32>, ddx: vec2<f32>, ddy: vec2<f32>, most: 
     return a * min(1.0, most / max(length(a), 1e-6));
 }
 
-// Albedo of ground of albedo `bottom` seen through `depth` of water along `way` per metre of depth, down and up again:
-// absorbed by e^(-a s); what is suspended scatters (single scattering, its own albedo).
-fn rain_through_water(bottom: vec3<f32>, look: WaterLook, depth: f32, way: f32) -> vec3<f32> {
-    let path = 2.0 * depth * way;
-    let clear = exp(-(look.absorption.xyz + vec3<f32>(look.suspended.w)) * path);
-    return bottom * clear + look.suspended.xyz * (1.0 - exp(-look.suspended.w * path));
+// Reflectance of still water (n = 1.333) for unpolarised light at this cosine.
+fn rain_water_fresnel(cos_incidence: f32) -> f32 {
+    let c = clamp(cos_incidence, 0.0, 1.0);
+    let t = sqrt(1.776889 - 1.0 + c * c);
+    let s = (c - t) / (c + t);
+    let p = (1.776889 * c - t) / (1.776889 * c + t);
+    return 0.5 * (s * s + p * p);
+}
+
+// Albedo of ground of dry albedo `dry` under `depth` m of water, seen or lit at this cosine in the air, without the
+// mirror on top: the twin of rain_core::surface::under_water. Error: 1e-5.
+fn rain_under_water(dry: vec3<f32>, look: WaterLook, depth: f32, cos_incidence: f32) -> vec3<f32> {
+    let c = clamp(cos_incidence, 0.0, 1.0);
+    let refracted = sqrt(1.0 - (1.0 - c * c) / 1.776889);
+    let turbidity = look.mud.w;
+    let loss = look.absorption.xyz + turbidity;
+    let enters = 1.0 - rain_water_fresnel(c);
+    // Lekner & Dorf 1988, as in rain_wet_albedo; the ways up and round are means over directions.
+    let gain = (1.0 - 0.0375281) / (1.0 - 0.0990658);
+    let rho = clamp(dry, vec3<f32>(0.0), vec3<f32>(1.0));
+    let body = rho * (2.0 - gain + (gain - 1.0) * rho);
+    let escape = (1.0 - 0.474591) * body / (1.0 - 0.474591 * exp(-loss * 4.6 * depth) * body);
+    let ground = enters * exp(-loss * depth / refracted) * exp(-loss * 1.19 * depth) * escape;
+    let hidden = 1.0 - exp(-turbidity * depth * (1.0 / refracted + 1.19));
+    return ground + enters * look.mud.xyz * hidden * turbidity / max(loss, vec3<f32>(1e-9));
 }
 
 // Slopes (dh/dx, dh/dz) of wind waves at `p` (any origin that stays), `time` in s: five deep-water wave trains within

@@ -9,5 +9,6 @@ mod optical_depth;
 mod reflection;
 mod shader_functions;
 mod slope_mips;
+mod water;
 mod waves;
 mod wet_albedo;

@@ -3,6 +3,7 @@
 mod device_loss;
 mod groups;
 mod materials;
+mod placed_puddles;
 mod puddles;
 mod skipping;
 mod two_views;

@@ -74,6 +74,17 @@ pub fn identifier(text: &str) -> &str {
     &text[..end.unwrap_or(text.len())]
 }
 
+/// The type that a line which starts with `impl` is about; `rest` is what follows that word.
+pub fn subject_of_impl(rest: &str) -> &str {
+    // `impl<T> Trait for Type<T> {`: the type is what follows the last `for`.
+    let subject = rest.rsplit(" for ").next().unwrap_or(rest).trim();
+    let subject = match subject.strip_prefix('<') {
+        Some(generics) => generics.split_once('>').map_or(generics, |(_, rest)| rest).trim(),
+        None => subject,
+    };
+    identifier(subject)
+}
+
 /// Names of all functions and constants in a Rust or WGSL source, alone and as `Type::function` where they stand in an
 /// `impl`.
 fn functions(source: &str) -> BTreeSet<String> {
@@ -81,13 +92,7 @@ fn functions(source: &str) -> BTreeSet<String> {
     let mut of: Option<&str> = None;
     for line in source.lines() {
         if let Some(rest) = line.strip_prefix("impl") {
-            // `impl<T> Trait for Type<T> {`: the type is what follows the last `for`.
-            let subject = rest.rsplit(" for ").next().unwrap_or(rest).trim();
-            let subject = match subject.strip_prefix('<') {
-                Some(generics) => generics.split_once('>').map_or(generics, |(_, rest)| rest).trim(),
-                None => subject,
-            };
-            of = Some(identifier(subject));
+            of = Some(subject_of_impl(rest));
         } else if line.starts_with('}') {
             of = None;
         }

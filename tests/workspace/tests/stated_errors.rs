@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::docs::quoted;
-use crate::physics::{Row, TABLE, identifier, rows};
+use crate::physics::{Row, TABLE, identifier, rows, subject_of_impl};
 use crate::repository::{files_ending, text};
 
 /// What stands in place of a bound.
@@ -88,12 +88,7 @@ impl Documentation {
             let mut of: Option<&str> = None;
             for line in source.lines() {
                 if let Some(rest) = line.strip_prefix("impl") {
-                    let subject = rest.rsplit(" for ").next().unwrap_or(rest).trim();
-                    let subject = match subject.strip_prefix('<') {
-                        Some(generics) => generics.split_once('>').map_or(generics, |(_, rest)| rest).trim(),
-                        None => subject,
-                    };
-                    of = Some(identifier(subject));
+                    of = Some(subject_of_impl(rest));
                 } else if line.starts_with('}') {
                     of = None;
                 }

@@ -9,7 +9,7 @@
 }
 #import rain::surface::{
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
-    rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_through_water, rain_wind_slopes,
+    rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
     rain_painted_puddle_water, rain_crack_water, rain_puddle_noise,
 }
 #ifdef PREPASS_PIPELINE
@@ -64,21 +64,25 @@ struct WaterSurface {
     variance: f32,
 }
 
-fn water_surface(p: vec3<f32>, depth: f32, exposure: f32) -> WaterSurface {
+fn water_surface(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, depth: f32, exposure: f32) -> WaterSurface {
     var out: WaterSurface;
     let look = rain_surface.water;
     // Waves and rings need water under them.
     let room = smoothstep(0.001, 0.006, depth);
+    if (room <= 0.0) {
+        return out;
+    }
     out.slope = rain_wind_slopes(look, p.xz + rain_surface.eye.xz, rain_surface.eye.w) * room;
     if (look.ripples.w > 0.5) {
-        let ring = textureSample(rain_ripple_map, rain_sampler, p.xz * look.ripples.x + look.ripples.yz);
+        let ring = textureSampleGrad(rain_ripple_map, rain_sampler, p.xz * look.ripples.x + look.ripples.yz,
+            ddx * look.ripples.x, ddy * look.ripples.x);
         let strength = look.absorption.w * exposure * room;
         out.slope += ring.xy * strength;
         out.variance += max(ring.z, 0.0) * strength * strength;
     }
     if (look.waves.w > 0.5) {
         let uv = (p.xz - look.waves.xy) * look.waves.z;
-        let wave = textureSample(rain_wave_map, rain_sampler, uv);
+        let wave = textureSampleGrad(rain_wave_map, rain_sampler, uv, ddx * look.waves.z, ddy * look.waves.z);
         let inside = f32(all(uv > vec2<f32>(0.01)) && all(uv < vec2<f32>(0.99)));
         out.slope += wave.xy * inside;
         out.variance += max(wave.z, 0.0) * inside;
@@ -154,8 +158,10 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 #endif
     let placed = placed_water(paint, height, p.xz + rain_surface.eye.xz);
     depth = max(depth, placed.depth);
+    let ddx = dpdx(p.xz);
+    let ddy = dpdy(p.xz);
 #ifdef VERTEX_UVS_A
-    let pixels = rain_shift_in_pixels(rain_refraction_shift(to_eye, min(depth, 0.3)), dpdx(p.xz), dpdy(p.xz), 24.0);
+    let pixels = rain_shift_in_pixels(rain_refraction_shift(to_eye, min(depth, 0.3)), ddx, ddy, 24.0);
     input.uv += pixels.x * dpdx(in.uv) + pixels.y * dpdy(in.uv);
 #endif
     var pbr = pbr_input_from_standard_material(input, is_front);
@@ -183,16 +189,14 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     let dry = pbr.material.base_color.rgb;
     let soaked = mix(dry, rain_wet_albedo(dry), porosity * (1.0 - pbr.material.metallic));
     var body = mix(dry, soaked, wetness);
-    // The way through the water, per metre of depth.
-    let way = 1.0 / sqrt(1.0 - (1.0 - to_eye.y * to_eye.y) / 1.776889);
-    body = mix(body, rain_through_water(body, rain_surface.water, max(depth, 0.0), way), puddle);
+    body = mix(body, rain_under_water(dry, rain_surface.water, max(depth, 0.0), to_eye.y), puddle);
     pbr.material.base_color = vec4<f32>(body, pbr.material.base_color.a);
     // Damp pores shine a little; a closed film is as smooth as drops leave it.
     let damp = mix(pbr.material.perceptual_roughness, 0.45, 0.75 * wetness);
     var rough = mix(min(pbr.material.perceptual_roughness, damp), FILM_ROUGHNESS, film);
     rough = min(pbr.material.perceptual_roughness, rough);
     // Reflections: a film follows the road's grain, standing water does not.
-    let water = water_surface(p, depth, exposure * placed.ripples);
+    let water = water_surface(p, ddx, ddy, depth, exposure * placed.ripples);
     let flat = normalize(mix(pbr.N, normal, 0.75 * film));
     let surface = normalize(vec3<f32>(-water.slope.x, 1.0, -water.slope.y));
     pbr.N = normalize(mix(flat, surface, puddle));

@@ -1,0 +1,194 @@
+//! The shader library's water against its CPU twins: what artists place, and how standing water looks.
+
+use rain_core::surface::artist_look::{crack_water, painted_puddle_water};
+use rain_core::surface::{Water, under_water};
+
+use crate::device::{device, kernel, library};
+
+/// `expression` over `v = input[i]`, or `None` where there is no device.
+fn evaluate(expression: &str, input: &[[f32; 4]]) -> Option<Vec<[f32; 4]>> {
+    let gpu = device()?;
+    let body = format!("let v = input[i]; output[i] = {expression};");
+    Some(gpu.compute(&kernel(&library(), "vec4<f32>", "vec4<f32>", &body), input, &[]))
+}
+
+/// Every combination of `a` and `b`, with `c` and `d` fixed.
+fn grid(a: &[f32], b: &[f32], c: f32, d: f32) -> Vec<[f32; 4]> {
+    a.iter().flat_map(|&a| b.iter().map(move |&b| [a, b, c, d])).collect()
+}
+
+const SHARES: [f32; 9] = [-0.5, 0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0, 1.5];
+
+#[test]
+fn painted_puddles_are_the_cpus() {
+    for margin in [0.0, 0.05, 0.4, 1.0] {
+        let input = grid(&SHARES, &SHARES, margin, 0.0);
+        let Some(found) = evaluate("vec4<f32>(rain_painted_puddle_water(v.x, v.y, v.z))", &input) else {
+            return;
+        };
+        let off = |shift: f64| {
+            let wanted = |i: &[f32; 4]| painted_puddle_water(f64::from(i[0]) + shift, i[1].into(), i[2].into());
+            let worst = input
+                .iter()
+                .zip(&found)
+                .map(|(i, f)| (f64::from(f[0]) - wanted(i)).abs());
+            worst.fold(0.0, f64::max)
+        };
+        // A margin of 1e-4 magnifies rounding ten thousand times.
+        assert!(off(0.0) < 2e-3, "{margin}: {}", off(0.0));
+        assert!(off(0.05) > 0.04, "a level that is off is found");
+    }
+}
+
+#[test]
+fn holes_of_a_height_map_are_the_cpus() {
+    let input = grid(&SHARES, &SHARES, 0.0, 0.0);
+    let Some(found) = evaluate("vec4<f32>(rain_crack_water(v.x, v.y))", &input) else {
+        return;
+    };
+    for (i, f) in input.iter().zip(&found) {
+        assert!(
+            (f64::from(f[0]) - crack_water(i[0].into(), i[1].into())).abs() < 1e-6,
+            "{i:?}: {f:?}"
+        );
+    }
+}
+
+#[test]
+fn noise_puddles_have_no_steps_and_use_the_whole_range() {
+    let input: Vec<[f32; 4]> = (0..20_000_u16)
+        .map(|i| [f32::from(i) * 0.002 - 20.0, 1.37, 0.0, 0.0])
+        .collect();
+    let Some(found) = evaluate("vec4<f32>(rain_puddle_noise(v.xy, 7u))", &input) else {
+        return;
+    };
+    let values: Vec<f32> = found.iter().map(|f| f[0]).collect();
+    assert!(values.iter().all(|v| (0.0..=1.0).contains(v)));
+    let step = values.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
+    // The steepest octave rises by at most some 4 a unit after the spread.
+    assert!(step < 0.03, "{step}");
+    let low = values.iter().filter(|v| **v < 0.1).count();
+    let high = values.iter().filter(|v| **v > 0.9).count();
+    assert!(low > 200 && high > 200, "{low} low, {high} high");
+}
+
+const LOOKS: [Water; 3] = [
+    Water::CLEAR,
+    Water::MUDDY,
+    Water {
+        absorption_per_m: [0.34, 0.06, 0.01],
+        turbidity_per_m: 5.0,
+        mud_albedo: [0.30, 0.22, 0.13],
+    },
+];
+
+#[test]
+fn ground_under_water_is_the_cpus() {
+    let depths = [0.0, 0.001, 0.01, 0.1, 1.0];
+    let cosines = [0.0, 0.05, 0.2, 0.5, 0.9, 1.0];
+    let mut worst = (0.0_f64, 0.0_f64);
+    for water in LOOKS {
+        let [r, g, b] = water.absorption_per_m;
+        let [mr, mg, mb] = water.mud_albedo;
+        let zero = "vec4<f32>(0.0)";
+        let look = format!(
+            "WaterLook(vec4<f32>({r:?}, {g:?}, {b:?}, 0.0), vec4<f32>({mr:?}, {mg:?}, {mb:?}, {:?}), {zero}, {zero}, {zero})",
+            water.turbidity_per_m
+        );
+        for dry in [0.0, 0.1, 0.4, 1.0] {
+            let input = grid(&depths, &cosines, dry, 0.0);
+            let expression = format!("vec4<f32>(rain_under_water(vec3<f32>(v.z), {look}, v.x, v.y), 0.0)");
+            let Some(found) = evaluate(&expression, &input) else {
+                return;
+            };
+            for (i, f) in input.iter().zip(&found) {
+                let [depth, cosine, dry, _] = i.map(f64::from);
+                let off = |depth: f64| {
+                    let wanted = under_water([dry; 3], &water, depth, cosine);
+                    (0..3).map(|c| (f64::from(f[c]) - wanted[c]).abs()).fold(0.0, f64::max)
+                };
+                worst.0 = worst.0.max(off(depth));
+                worst.1 = worst.1.max(off(1.2 * depth));
+            }
+        }
+    }
+    assert!(worst.0 < 1e-5, "{}", worst.0);
+    assert!(worst.1 > 0.01, "a depth that is off is found: {}", worst.1);
+}
+
+#[test]
+fn the_bottom_is_where_snell_puts_it() {
+    // Angle of the view from straight down, depth.
+    let angles: Vec<f32> = (0..28_u8).map(|i| f32::from(i) * 0.05).collect();
+    let input = grid(&angles, &[-0.1, 0.0, 0.01, 0.3], 0.0, 0.0);
+    let expression =
+        "vec4<f32>(rain_refraction_shift(vec3<f32>(sin(v.x) * 0.6, cos(v.x), sin(v.x) * 0.8), v.y), 0.0, 0.0)";
+    let Some(found) = evaluate(expression, &input) else {
+        return;
+    };
+    for (i, f) in input.iter().zip(&found) {
+        let (angle, depth) = (f64::from(i[0]), f64::from(i[1]).max(0.0));
+        let refracted = (angle.sin() / 1.333).asin();
+        let run = depth * (angle.tan() - refracted.tan());
+        let error = (f64::from(f[0]) - 0.6 * run)
+            .abs()
+            .max((f64::from(f[1]) - 0.8 * run).abs());
+        assert!(error < 1e-5 * (1.0 + run), "{i:?}: {f:?}, not {run}");
+    }
+}
+
+#[test]
+fn a_shift_on_the_ground_is_the_same_in_pixels() {
+    // Gradients of a ground seen askew; v is the shift.
+    let input = grid(&[-0.02, 0.0, 0.013], &[-0.01, 0.02], 0.0, 0.0);
+    let (ddx, ddy) = ([0.01_f32, 0.002_f32], [0.004_f32, -0.03_f32]);
+    let call = |most: f32| {
+        format!(
+            "vec4<f32>(rain_shift_in_pixels(v.xy, vec2<f32>({:?}, {:?}), vec2<f32>({:?}, {:?}), {most:?}), 0.0, 0.0)",
+            ddx[0], ddx[1], ddy[0], ddy[1]
+        )
+    };
+    let (Some(found), Some(held)) = (evaluate(&call(100.0), &input), evaluate(&call(0.5), &input)) else {
+        return;
+    };
+    for ((i, f), h) in input.iter().zip(&found).zip(&held) {
+        for axis in 0..2 {
+            let back = f[0] * ddx[axis] + f[1] * ddy[axis];
+            assert!((back - i[axis]).abs() < 1e-6, "{i:?}: {back}");
+        }
+        assert!(h[0].hypot(h[1]) < 0.5 + 1e-5, "{h:?}");
+    }
+    let flat = "vec4<f32>(rain_shift_in_pixels(v.xy, vec2<f32>(0.1, 0.1), vec2<f32>(0.2, 0.2), 9.0), 0.0, 0.0)";
+    let Some(found) = evaluate(flat, &input) else { return };
+    assert!(
+        found.iter().all(|f| f == &[0.0; 4]),
+        "a ground seen edge on moves nothing"
+    );
+}
+
+#[test]
+fn wind_waves_have_the_slopes_they_are_given() {
+    let zero = "vec4<f32>(0.0)";
+    let call = |square: f32| {
+        format!(
+            "vec4<f32>(rain_wind_slopes(WaterLook({zero}, {zero}, vec4<f32>({square:?}, 4.0, 0.24, -0.18), {zero}, {zero}), \
+             v.xy, v.z), 0.0, 0.0)"
+        )
+    };
+    let input: Vec<[f32; 4]> = (0..60_000_u32)
+        .map(|i| {
+            [
+                (i % 300) as f32 * 0.137,
+                (i / 300) as f32 * 0.211,
+                (i % 7) as f32 * 0.9,
+                0.0,
+            ]
+        })
+        .collect();
+    let (Some(found), Some(calm)) = (evaluate(&call(0.01), &input), evaluate(&call(0.0), &input)) else {
+        return;
+    };
+    let square: f32 = found.iter().map(|f| f[0] * f[0] + f[1] * f[1]).sum::<f32>() / found.len() as f32;
+    assert!((square / 0.01 - 1.0).abs() < 0.02, "{square}");
+    assert!(calm.iter().all(|f| f == &[0.0; 4]), "no wind, no waves");
+}
