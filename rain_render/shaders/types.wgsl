@@ -102,7 +102,8 @@ struct LevelMapParams {
     cells: vec2<f32>,
     // 1 when there is a map, 0 for none.
     present: f32,
-    pad: f32,
+    // 1 when there is a map of films in the same cells.
+    films: f32,
 }
 
 // How standing water looks.

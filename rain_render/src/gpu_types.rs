@@ -78,7 +78,7 @@ pub struct LevelMapParams {
     pub base: f32,
     pub cells: [f32; 2],
     pub present: f32,
-    pub pad: f32,
+    pub films: f32,
 }
 
 /// How standing water looks.
@@ -186,7 +186,7 @@ pub fn layouts() -> Vec<Layout> {
             viewport, focal, near, exposure, contrast, kappa, soft, drops, pad_a, pad_b, pad_c, cover, classes),
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
-        layout!(LevelMapParams: corner, inverse_cell, base, cells, present, pad),
+        layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
         layout!(WaterLook: absorption, mud, ambient, ripples, waves),
         layout!(ReflectionParams: clip_from_eye, eye),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, reflection),

@@ -19,7 +19,9 @@ use rain_render::rainfall::Shutter;
 use super::RainMasks;
 use crate::cover::CoverMap;
 use crate::rainfall::{RainViewFrame, ViewMotion};
-use crate::surface::{MirrorFrame, SurfaceState, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};
+use crate::surface::{
+    GroundFilms, MirrorFrame, SurfaceState, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance,
+};
 use crate::waves::{Handover, PuddleWaves, RainRings};
 
 /// One camera that sees rain.
@@ -68,6 +70,7 @@ pub(super) struct ExtractedSurface {
     pub water: WaterLook,
     pub images: Option<ExtractedWaterImages>,
     pub levels: Option<WaterLevels>,
+    pub films: GroundFilms,
     pub mirror: Option<(Mat4, Vec3)>,
     pub mirror_strength: f32,
     pub buffer: AssetId<ShaderBuffer>,
@@ -79,6 +82,7 @@ pub(super) struct ExtractedSurface {
 #[derive(Clone, Copy)]
 pub(super) struct ExtractedWaterImages {
     pub levels: AssetId<Image>,
+    pub films: AssetId<Image>,
     pub reflection: AssetId<Image>,
     pub ripples: AssetId<Image>,
     pub waves: AssetId<Image>,
@@ -158,6 +162,7 @@ pub(super) fn extract_rain(
     water: Extract<(
         Option<Res<WaterImages>>,
         Option<Res<WaterLevels>>,
+        Option<Res<GroundFilms>>,
         Option<Res<WaterAppearance>>,
         Option<Res<MirrorFrame>>,
     )>,
@@ -176,7 +181,7 @@ pub(super) fn extract_rain(
     let sun = suns
         .iter()
         .max_by(|(a, _), (b, _)| a.illuminance.total_cmp(&b.illuminance));
-    let (images, levels, appearance, mirror) = &*water;
+    let (images, levels, films, appearance, mirror) = &*water;
     // What does not validate has been named in the log.
     let appearance = appearance.as_ref().and_then(|a| a.validated().ok()).unwrap_or_default();
     commands.insert_resource(ExtractedRainScene {
@@ -196,14 +201,16 @@ pub(super) fn extract_rain(
             water: water_look(&appearance, surface),
             images: images.as_ref().map(|i| ExtractedWaterImages {
                 levels: i.levels.id(),
+                films: i.films.id(),
                 reflection: i.reflection.id(),
                 ripples: i.ripples.id(),
                 waves: i.waves.id(),
             }),
             levels: levels
                 .as_ref()
-                .filter(|l| l.is_valid() && l.any_water())
+                .filter(|l| l.is_valid() && !l.levels_m().is_empty())
                 .map(|l| (**l).clone()),
+            films: films.as_ref().map(|f| (**f).clone()).unwrap_or_default(),
             mirror: mirror.as_ref().and_then(|m| m.view),
             mirror_strength: appearance.reflection_strength,
             buffer: surface.handles.params.id(),

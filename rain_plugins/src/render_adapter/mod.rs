@@ -118,6 +118,12 @@ pub(crate) fn level_image(texels: u32) -> Image {
     gpu_image("rain water levels", texels, texels, TextureFormat::R32Float, usage)
 }
 
+/// A half-precision texture of the ground's films.
+pub(crate) fn film_image(texels: u32) -> Image {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    gpu_image("rain ground films", texels, texels, TextureFormat::Rgba16Float, usage)
+}
+
 /// A tiling texture of water slopes with all its mips; see `rain_render::slope_mips`.
 pub(crate) fn slope_image(texels: u32) -> Image {
     let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;

@@ -22,7 +22,6 @@ use rain_render::waves::{WaveTileGpu, WavesGpu};
 
 use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
 use crate::report::RainReport;
-use crate::surface::WaterLevels;
 
 /// Everything on the GPU that lives with the device; rebuilt after a device loss.
 #[derive(Resource)]
@@ -39,6 +38,8 @@ pub(super) struct RainGpu {
     pub wave_tile: Option<WaveTileGpu>,
     /// Which levels of standing water the texture holds.
     levels_version: Option<u64>,
+    /// Which films of the ground.
+    films_version: Option<u64>,
 }
 
 impl FromWorld for RainGpu {
@@ -65,6 +66,7 @@ impl FromWorld for RainGpu {
             ripple_tile: None,
             wave_tile: None,
             levels_version: None,
+            films_version: None,
         }
     }
 }
@@ -76,21 +78,44 @@ fn texture_bytes(texture: &wgpu::Texture) -> usize {
     (0..texture.mip_level_count()).map(level).sum::<usize>() * texel
 }
 
-fn upload_levels(queue: &RenderQueue, levels: &WaterLevels, texture: &wgpu::Texture) {
+/// Writes one texel for each cell, row after row, if there are as many.
+fn upload_cells<T: bytemuck::Pod>(queue: &RenderQueue, texture: &wgpu::Texture, cells: UVec2, texels: &[T]) {
+    if texels.is_empty() || texels.len() != cells.element_product() as usize {
+        return;
+    }
     queue.write_texture(
         texture.as_image_copy(),
-        bytemuck::cast_slice(levels.levels_m()),
+        bytemuck::cast_slice(texels),
         wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(4 * levels.cells.x),
+            bytes_per_row: Some(size_of::<T>() as u32 * cells.x),
             rows_per_image: None,
         },
         wgpu::Extent3d {
-            width: levels.cells.x,
-            height: levels.cells.y,
+            width: cells.x,
+            height: cells.y,
             depth_or_array_layers: 1,
         },
     );
+}
+
+/// Uploads levels and films that have changed.
+fn prepare_ground(gpu: &mut RainGpu, queue: &RenderQueue, images: &RenderAssets<GpuImage>, surface: &ExtractedSurface) {
+    let (Some(ids), Some(levels)) = (surface.images, &surface.levels) else {
+        return;
+    };
+    if gpu.levels_version != Some(levels.version())
+        && let Some(image) = images.get(ids.levels)
+    {
+        upload_cells(queue, &image.texture, levels.cells, levels.levels_m());
+        gpu.levels_version = Some(levels.version());
+    }
+    if gpu.films_version != Some(surface.films.version)
+        && let Some(image) = images.get(ids.films)
+    {
+        upload_cells(queue, &image.texture, levels.cells, &surface.films.texels);
+        gpu.films_version = Some(surface.films.version);
+    }
 }
 
 /// Uploads this frame's rings and waves.
@@ -139,8 +164,8 @@ fn surface_params(
             inverse_cell: (1.0 / l.cell_m) as f32,
             base: (l.base_m - origin.y) as f32,
             cells: l.cells.as_vec2().to_array(),
-            present: 1.0,
-            pad: 0.0,
+            present: f32::from(u8::from(l.any_water())),
+            films: f32::from(u8::from(surface.films.texels.len() == l.levels_m().len())),
         });
     let reflection = surface
         .mirror
@@ -196,13 +221,8 @@ pub(super) fn prepare_rain(
         _ => open_sky(),
     };
     let surface_params = |eye: Vec3| surface_params(scene.surface.as_ref(), &waves, cover_at(eye.as_dvec3()), eye);
-    if let Some((levels, image)) = scene.surface.as_ref().and_then(|s| {
-        let image = images.get(s.images.as_ref()?.levels)?;
-        Some((s.levels.as_ref()?, image))
-    }) && gpu.levels_version != Some(levels.version())
-    {
-        upload_levels(&queue, levels, &image.texture);
-        gpu.levels_version = Some(levels.version());
+    if let Some(surface) = scene.surface.as_ref().filter(|s| s.wet) {
+        prepare_ground(gpu, &queue, &images, surface);
     }
     if let Some(surface) = scene.surface.as_ref().filter(|s| s.wet)
         && let Some(buffer) = buffers.get(surface.buffer)
@@ -284,7 +304,9 @@ pub(super) fn prepare_rain(
         slot.prepare(device, &queue, &gpu.rainfall, &input, textures);
     }
     let water = scene.surface.as_ref().and_then(|s| s.images);
-    let water = water.iter().flat_map(|i| [i.levels, i.ripples, i.waves, i.reflection]);
+    let water = water
+        .iter()
+        .flat_map(|i| [i.levels, i.films, i.ripples, i.waves, i.reflection]);
     let textures = water.chain(cover.map(|c| c.image)).filter_map(|id| images.get(id));
     let tiles = [&gpu.ripple_tile, &gpu.wave_tile].into_iter().flatten();
     report.gpu_memory(

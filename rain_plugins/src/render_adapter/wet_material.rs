@@ -53,6 +53,9 @@ pub struct WetSurface {
     /// Painted channels; without it white, which is unpainted ground.
     #[texture(108)]
     pub painted: Option<Handle<Image>>,
+    /// Films and pores of the ground.
+    #[texture(109)]
+    pub films: Handle<Image>,
 }
 
 impl MaterialExtension for WetSurface {

@@ -1,9 +1,10 @@
-//! The simulation's ground in the picture: levels of its puddles, and the ground under the view.
+//! The simulation's ground in the picture: levels of its puddles, its films and pores, and the ground under the view.
 
 use std::sync::Arc;
 
 use bevy::math::DVec2;
 use bevy::prelude::*;
+use half::f16;
 use rain_ecs::prelude::*;
 
 use super::state::SurfaceState;
@@ -15,6 +16,87 @@ use crate::rainfall::RainView;
 pub struct LevelsFromGround {
     /// Build, level version and first cell that the levels show.
     shown: Option<(u64, u64, UVec2)>,
+}
+
+/// Films and pores of the ground, for the picture; in the cells of [`WaterLevels`].
+///
+/// What the ground remembers is seen: a floor that dries slowly under a new roof, a road that stays wet under a car that
+/// has just come.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct GroundFilms {
+    /// For each cell: share under a closed film, pore saturation, height above the levels' base in m, 1. Empty: the
+    /// picture goes by the weather and by what covers now. As half floats.
+    pub texels: Arc<Vec<[u16; 4]>>,
+    /// Counts changes.
+    pub version: u64,
+    /// What is shown: build, version of the films, first cell; and when it was taken. Units: ns.
+    shown: Option<(u64, u64, UVec2, u64)>,
+}
+
+/// Films are followed this often: they change slowly, and every change is uploaded. Units: ns.
+const FILMS_NS: u64 = 250_000_000;
+
+/// Height of a cell without ground: nothing is near it. Units: m.
+const NO_GROUND_M: f32 = -3e4;
+
+/// Share of a surface that a film covers: it closes as it fills the texture.
+fn film_share(film_mm: f32, texture_mm: f32) -> f32 {
+    let t = (film_mm / texture_mm.max(1e-3)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Shows the ground's films and pores when they have changed; in the physical way only, which is the ground's.
+pub(super) fn follow_films(
+    mut films: ResMut<GroundFilms>,
+    mut scratch: Local<[Vec<f32>; 2]>,
+    levels: Res<WaterLevels>,
+    shown: Res<LevelsFromGround>,
+    surface: Res<SurfaceState>,
+    clock: Res<RainClock>,
+    ground: Option<Res<SurfaceGround>>,
+) {
+    let source = ground.as_ref().and_then(|g| Some((g.ground()?, shown.shown?)));
+    let Some((ground, (builds, _, first))) = source.filter(|_| surface.artist.w < 0.5) else {
+        if films.shown.take().is_some() {
+            films.texels = Arc::default();
+            films.version += 1;
+        }
+        return;
+    };
+    let (version, now) = (ground.film_version(), clock.now_ns());
+    let fresh = films
+        .shown
+        .is_none_or(|(b, v, f, at)| (b, f) != (builds, first) || (v != version && now.abs_diff(at) >= FILMS_NS));
+    if !fresh {
+        return;
+    }
+    let [nx, nz] = ground.frame().cells();
+    let [film, saturation] = &mut *scratch;
+    film.resize(nx * nz, 0.0);
+    saturation.resize(nx * nz, 0.0);
+    ground.films_into(film);
+    ground.saturations_into(saturation);
+    let texture = SurfaceClass::ALL.map(|class| ground.properties(class).texture_depth_mm as f32);
+    let texel = |cell: usize| {
+        let height = ground.ground_heights()[cell];
+        let share = film_share(film[cell], texture[usize::from(ground.classes()[cell])]);
+        [
+            share,
+            saturation[cell],
+            if height.is_nan() { NO_GROUND_M } else { height },
+            1.0,
+        ]
+        .map(|value| f16::from_f32(value).to_bits())
+    };
+    let rows = first.y as usize..(first.y + levels.cells.y) as usize;
+    let columns = first.x as usize..(first.x + levels.cells.x) as usize;
+    films.texels = Arc::new(
+        rows.flat_map(|z| columns.clone().map(move |x| z * nx + x))
+            .map(texel)
+            .collect(),
+    );
+    films.version += 1;
+    films.shown = Some((builds, version, first, now));
 }
 
 /// The window of a larger ground moves by this many cells at once.

@@ -9,13 +9,15 @@ use rain_ecs::prelude::*;
 
 use super::dynamic::{OwnWetness, give_own_wetness};
 use super::geometry::{HandedOver, MovesInRain, hand_over};
-use super::ground::{LevelsFromGround, follow_ground};
+use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirror};
 use super::state::{SurfaceState, create_state, follow_weather};
 use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::CoverMap;
-use crate::render_adapter::{RenderApp, WetMaterial, WetSurface, level_image, reflection_image, slope_image};
+use crate::render_adapter::{
+    RenderApp, WetMaterial, WetSurface, film_image, level_image, reflection_image, slope_image,
+};
 use crate::schedule::RainViewSystems;
 
 /// Keeps a mesh's material as it is, however wet the weather.
@@ -107,6 +109,7 @@ impl Plugin for WetSurfacePlugin {
             .init_resource::<WaterAppearance>()
             .init_resource::<WaterLevels>()
             .init_resource::<LevelsFromGround>()
+            .init_resource::<GroundFilms>()
             .init_resource::<HandedOver>()
             .register_type::<MovesInRain>()
             .add_systems(Startup, (create_state, create_images))
@@ -115,7 +118,7 @@ impl Plugin for WetSurfacePlugin {
                 (
                     give_own_wetness,
                     check_appearance.run_if(resource_changed::<WaterAppearance>),
-                    (follow_weather, follow_ground, aim_mirror)
+                    (follow_weather, follow_ground, follow_films, aim_mirror)
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
@@ -154,6 +157,7 @@ fn check_appearance(appearance: Res<WaterAppearance>) {
 fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, mirror: Res<ReflectionSize>) {
     commands.insert_resource(WaterImages {
         levels: images.add(level_image(LEVEL_TEXELS)),
+        films: images.add(film_image(LEVEL_TEXELS)),
         ripples: images.add(slope_image(256)),
         waves: images.add(slope_image(256)),
         reflection: images.add(reflection_image(mirror.0)),
@@ -253,6 +257,7 @@ fn wet_meshes(
                     cover: map.image.clone(),
                     params: surface.handles.params.clone(),
                     levels: water.levels.clone(),
+                    films: water.films.clone(),
                     ripples: water.ripples.clone(),
                     waves: water.waves.clone(),
                     reflection: water.reflection.clone(),

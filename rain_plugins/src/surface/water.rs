@@ -218,6 +218,8 @@ impl WaterLevels {
 pub struct WaterImages {
     /// Levels (R32Float).
     pub levels: Handle<Image>,
+    /// Films, pores and heights of the ground (Rgba16Float), see [`super::GroundFilms`].
+    pub films: Handle<Image>,
     /// Slopes of the rings that drops make, tiling the world (Rgba16Float).
     pub ripples: Handle<Image>,
     /// Slopes of interactive waves near the view (Rgba16Float).

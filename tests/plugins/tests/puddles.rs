@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use rain_plugins::prelude::*;
 use rain_plugins::surface::WaterLevels;
 use test_support::app::{FRAME, TestApp};
-use test_support::gpu;
+use test_support::{gpu, world};
 
 /// Cells along a side of the ground, and their size. Units: m.
 const CELLS: u32 = 48;
@@ -48,11 +48,8 @@ fn hollow_ground() -> Mesh {
         .with_inserted_indices(Indices::U32(indices))
 }
 
-#[test]
-fn a_hollow_fills_shows_water_and_dries_and_its_passes_come_and_go() {
-    if !gpu::available() {
-        return;
-    }
+/// The ground with a hollow under a dry sky, and its weather.
+fn hollow() -> (TestApp, Entity) {
     let mut test = TestApp::new([160, 90], true);
     let mesh = test.world().resource_mut::<Assets<Mesh>>().add(hollow_ground());
     let material = test
@@ -75,6 +72,15 @@ fn a_hollow_fills_shows_water_and_dries_and_its_passes_come_and_go() {
         PlanarReflection::default(),
     ));
     test.look(Vec3::new(0.0, 2.0, 4.0), Vec3::ZERO);
+    (test, weather)
+}
+
+#[test]
+fn a_hollow_fills_shows_water_and_dries_and_its_passes_come_and_go() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, weather) = hollow();
     test.frames(3, FRAME);
     test.leap(2);
     test.frames(3, FRAME);
@@ -139,4 +145,44 @@ fn a_hollow_fills_shows_water_and_dries_and_its_passes_come_and_go() {
     for pass in passes {
         assert_eq!(test.recorded(pass), 0, "{pass:?} after all has dried");
     }
+}
+
+#[test]
+fn the_ground_stays_wet_under_what_has_just_come() {
+    if !gpu::available() {
+        return;
+    }
+    // Mean change of the picture's lower middle when a roof comes over the slope, out of sight.
+    let change = |remembers: bool| {
+        let (mut test, weather) = hollow();
+        test.world().insert_resource(SurfaceSettings {
+            enabled: remembers,
+            ..default()
+        });
+        test.frames(3, FRAME);
+        test.leap(2);
+        test.world().entity_mut(weather).insert(Weather::rain(60.0));
+        test.leap(1200);
+        test.frames(4, FRAME);
+        let before = test.picture();
+        let roof = world::block(
+            test.world(),
+            "roof",
+            Vec3::new(-4.0, 4.0, -4.0),
+            Vec3::new(4.0, 4.1, 3.0),
+            world::STONE,
+        );
+        test.world().entity_mut(roof).insert(MovesInRain);
+        test.frames(4, FRAME);
+        let after = test.picture();
+        let region = (50..80).flat_map(|y| (20..140).map(move |x| (x, y)));
+        let differences = region.map(|(x, y)| {
+            let (a, b) = (before.get_pixel(x, y).0, after.get_pixel(x, y).0);
+            a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(b))).sum::<f64>() / 3.0
+        });
+        differences.sum::<f64>() / (30.0 * 120.0)
+    };
+    let (with, without) = (change(true), change(false));
+    assert!(without > 4.0, "without a memory the ground dries at once: {without}");
+    assert!(with < 0.25 * without, "{with}, without a memory {without}");
 }

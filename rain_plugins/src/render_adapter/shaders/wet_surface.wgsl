@@ -48,6 +48,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(106) var rain_wave_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(109) var rain_film_map: texture_2d<f32>;
 
 // Perceptual roughness of still water: a mirror, as far as lamps of finite size let it be one.
 const WATER_ROUGHNESS: f32 = 0.045;
@@ -88,6 +89,19 @@ fn water_surface(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, depth: f32, expos
         out.variance += max(wave.z, 0.0) * inside;
     }
     return out;
+}
+
+// What the ground at `p` remembers: pore saturation, share under a film, and how far that holds for `p`: it is within
+// a step of the ground.
+fn remembered(p: vec3<f32>) -> vec3<f32> {
+    let levels = rain_surface.levels;
+    let cell = (p.xz - levels.corner) * levels.inverse_cell;
+    if (levels.films < 0.5 || any(cell < vec2<f32>(0.5)) || any(cell > levels.cells - 0.5)) {
+        return vec3<f32>(0.0);
+    }
+    let texel = textureSampleLevel(rain_film_map, rain_sampler, cell / vec2<f32>(textureDimensions(rain_film_map)), 0.0);
+    let above = abs(p.y - levels.base - texel.z);
+    return vec3<f32>(texel.y, texel.x, 1.0 - smoothstep(0.2, 0.35, above));
 }
 
 // What artists placed at a point.
@@ -175,6 +189,8 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     let puddle = level * wetting.take.x * max(select(shore, 0.0, depth <= placed.depth), placed.water);
     // Wetness of the pores and share under a film.
     var wet = vec2<f32>(rain_point_wetness(rain_surface.state, exposure), rain_point_film(rain_surface.state, exposure));
+    let ground = remembered(p);
+    wet = mix(wet, ground.xy * wetting.take.x * placed.wettable, ground.z * smoothstep(0.5, 0.8, normal.y));
     if (wetting.take.z > 0.5) {
         // A thing that moves carries its water with it, under cover too.
         wet = unpack2x16unorm(get_tag(in.instance_index)) * wetting.take.x * rain_catch(normal.y, dot(normal, to_rain));
