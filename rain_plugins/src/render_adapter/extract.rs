@@ -75,7 +75,8 @@ pub(super) struct ExtractedSurface {
     pub mirror_strength: f32,
     pub buffer: AssetId<ShaderBuffer>,
     pub anchor: Vec3,
-    pub wet: bool,
+    /// Wet materials are in the scene.
+    pub shown: bool,
 }
 
 /// The textures that wet materials read.
@@ -215,7 +216,7 @@ pub(super) fn extract_rain(
             mirror_strength: appearance.reflection_strength,
             buffer: surface.handles.params.id(),
             anchor: surface.anchor,
-            wet: surface.wet,
+            shown: surface.shown,
         }),
     });
     for (entity, frame, camera, environment, masks) in &views {

@@ -221,10 +221,10 @@ pub(super) fn prepare_rain(
         _ => open_sky(),
     };
     let surface_params = |eye: Vec3| surface_params(scene.surface.as_ref(), &waves, cover_at(eye.as_dvec3()), eye);
-    if let Some(surface) = scene.surface.as_ref().filter(|s| s.wet) {
+    if let Some(surface) = scene.surface.as_ref().filter(|s| s.shown) {
         prepare_ground(gpu, &queue, &images, surface);
     }
-    if let Some(surface) = scene.surface.as_ref().filter(|s| s.wet)
+    if let Some(surface) = scene.surface.as_ref().filter(|s| s.shown)
         && let Some(buffer) = buffers.get(surface.buffer)
     {
         let params = surface_params(surface.anchor);

@@ -165,8 +165,8 @@ fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, mirr
 }
 
 /// Painted meshes wear the wet material also when dry: their vertex colours are no tint.
-fn something_is_wet(surface: Res<SurfaceState>, painted: Query<(), With<PuddlePaint>>) -> bool {
-    surface.wet || !painted.is_empty()
+fn something_is_wet(surface: Res<SurfaceState>) -> bool {
+    surface.shown
 }
 
 /// Changes of an original reach its wet copies.

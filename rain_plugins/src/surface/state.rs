@@ -3,6 +3,8 @@
 use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
+use super::paint::PuddlePaint;
+use super::water::WaterLevels;
 use crate::rainfall::RainView;
 use crate::render_adapter::WetSurfaceHandles;
 
@@ -27,8 +29,10 @@ pub struct SurfaceState {
     pub ground_m: Option<f32>,
     /// Origin of the eye-relative positions in the buffer. Units: m, world.
     pub anchor: Vec3,
-    /// Something is wet, or rain falls.
+    /// Something is wet, water stands in a puddle, or rain falls.
     pub wet: bool,
+    /// Wet materials are in the scene: something is wet, or painted.
+    pub shown: bool,
     /// The buffer that the shaders read.
     pub handles: WetSurfaceHandles,
 }
@@ -43,6 +47,7 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
             ground_m: None,
             anchor: Vec3::ZERO,
             wet: false,
+            shown: false,
             handles: handles.clone(),
         });
     }
@@ -54,7 +59,10 @@ pub(super) fn follow_weather(
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
     views: Query<(&GlobalTransform, &Camera), With<RainView>>,
+    painted: Query<(), With<PuddlePaint>>,
+    levels: Res<WaterLevels>,
 ) {
+    surface.shown = !painted.is_empty();
     let eye = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation());
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
@@ -65,7 +73,9 @@ pub(super) fn follow_weather(
     // Soils stay damp for days; what is shown is the class below.
     surface.wet = weather.conditions().intensity_mm_h > 0.0
         || weather.wetness(CLASS) > 0.0
-        || weather.water_level_mm(CLASS) > 0.0;
+        || weather.water_level_mm(CLASS) > 0.0
+        || levels.any_water();
+    surface.shown |= surface.wet;
     surface.state = Vec4::new(
         weather.wetness_at(CLASS, clock.interpolation()) as f32,
         weather.water_level_mm_at(CLASS, clock.interpolation()) as f32,

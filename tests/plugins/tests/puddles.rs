@@ -137,6 +137,25 @@ fn a_hollow_fills_shows_water_and_dries_and_its_passes_come_and_go() {
         relative_humidity: 0.2,
         ..Weather::rain(0.0)
     });
+    // The road dries in an hour or two, the puddle does not, and is still seen.
+    test.leap(10_800);
+    test.frames(4, FRAME);
+    let state = test.world().get::<WeatherState>(weather).expect("the weather").clone();
+    assert_eq!(
+        (
+            state.wetness(SurfaceClass::Asphalt),
+            state.water_level_mm(SurfaceClass::Asphalt)
+        ),
+        (0.0, 0.0)
+    );
+    assert!(test.world().resource::<WaterLevels>().depth_at(0.0, 0.0) > 0.01);
+    test.reset();
+    test.frames(2, FRAME);
+    assert!(
+        test.recorded(PassName::Reflection) > 0,
+        "the puddle outlasts the wet road"
+    );
+
     test.leap(1_000_000);
     test.frames(4, FRAME);
     assert!(!test.world().resource::<WaterLevels>().any_water(), "all has dried");

@@ -216,7 +216,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     let flat = normalize(mix(pbr.N, normal, 0.75 * film));
     let surface = normalize(vec3<f32>(-water.slope.x, 1.0, -water.slope.y));
     pbr.N = normalize(mix(flat, surface, puddle));
-    // Slopes too small to be seen widen the mirror: alpha² grows by twice their variance.
+    // Slopes too small to be seen widen the mirror: alpha² grows by their variance, the sum of both axes.
     let mirror = pow(WATER_ROUGHNESS, 4.0) + water.variance;
     pbr.material.perceptual_roughness = clamp(mix(rough, pow(mirror, 0.25), puddle), 0.03, 1.0);
     pbr.material.metallic *= 1.0 - puddle;
