@@ -18,6 +18,7 @@
 pub mod clock;
 pub mod cover;
 pub mod error;
+pub mod history;
 pub mod queries;
 pub mod rainfall;
 pub mod schedule;
@@ -32,6 +33,7 @@ use bevy_app::{App, Plugin};
 pub use clock::{RainClock, RainClockPlugin};
 pub use cover::{CoverField, CoverFieldPlugin};
 pub use error::RainConfigError;
+pub use history::{RainHistory, RainHistoryPlugin};
 pub use queries::RainQueries;
 pub use rainfall::{RainfallField, RainfallFieldPlugin};
 pub use schedule::{RainSystems, RainTick};
@@ -47,6 +49,7 @@ pub mod prelude {
     pub use crate::clock::{RainClock, RainClockPlugin};
     pub use crate::cover::{CoverField, CoverFieldPlugin};
     pub use crate::error::RainConfigError;
+    pub use crate::history::{HistorySample, RainHistory, RainHistoryPlugin};
     pub use crate::queries::{RainQueries, SoundWetness, SurfaceSound};
     pub use crate::rainfall::{RainfallField, RainfallFieldPlugin};
     pub use crate::schedule::{RainSystems, RainTick};

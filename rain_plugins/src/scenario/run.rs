@@ -169,7 +169,7 @@ pub fn run(
         drops: Tally::of(&drops),
         ..Counts::default()
     };
-    let budget = record.budget(&mut session);
+    let (budget, _) = record.budget(&mut session);
     let expectations = evaluator.finish(&Evidence {
         timeline: &record.timeline,
         passes: &passes,
@@ -307,27 +307,30 @@ impl Recorder {
             push(&mut t.wetness, &name, weather.wetness(class));
             push(&mut t.water_level_mm, &name, weather.water_level_mm(class));
         }
-        let ledger = weather.column(SurfaceClass::Asphalt).ledger();
-        for (name, value) in [
-            ("rain", ledger.rain_mm),
-            ("film", ledger.film_mm),
-            ("pores", ledger.pores_mm),
-            ("evaporated", ledger.evaporated_mm),
-            ("infiltrated", ledger.infiltrated_mm),
-            ("drained", ledger.drained_mm),
+        let (budget, m3_per_mm) = self.budget(session);
+        let t = &mut self.timeline;
+        for (name, m3) in [
+            ("rain", budget.rain_m3),
+            ("film", budget.film_m3),
+            ("pores", budget.pores_m3),
+            ("basins", budget.basins_m3),
+            ("evaporated", budget.evaporated_m3),
+            ("infiltrated", budget.infiltrated_m3),
+            ("drained", budget.drained_m3),
         ] {
+            let value = m3 / m3_per_mm;
             push(&mut t.budget_mm, name, value);
         }
     }
 
-    /// The water of the whole domain: the ledger of the ground; without one, a surface column of the leading class times
-    /// the area.
-    fn budget(&self, session: &mut Session) -> Budget {
+    /// The water of the whole domain, and what 1 mm over it is in m³: the ledger of the ground; without one, a surface
+    /// column of the leading class times the area.
+    fn budget(&self, session: &mut Session) -> (Budget, f64) {
         if let Some(ground) = session.app().world().get_resource::<SurfaceGround>()
-            && ground.ground().is_some()
+            && let Some(built) = ground.ground()
         {
-            let l = ground.ledger();
-            return Budget {
+            let l = built.ledger();
+            let budget = Budget {
                 rain_m3: l.supplied_m3(),
                 // What has left a cell and is not in its basin yet is film on its way.
                 film_m3: l.film_m3 + l.underway_m3,
@@ -340,13 +343,15 @@ impl Recorder {
                 residual_relative: l.residual_relative,
                 ..Budget::default()
             };
+            return (budget, built.area_m2() * 1e-3);
         }
+        let m3_per_mm = self.area_m2 * 1e-3;
         let Some(weather) = session.weather() else {
-            return Budget::default();
+            return (Budget::default(), m3_per_mm);
         };
         let l = weather.column(SurfaceClass::Asphalt).ledger();
-        let m3 = |mm: f64| mm * 1e-3 * self.area_m2;
-        Budget {
+        let m3 = |mm: f64| mm * m3_per_mm;
+        let budget = Budget {
             rain_m3: m3(l.rain_mm),
             film_m3: m3(l.film_mm),
             pores_m3: m3(l.pores_mm),
@@ -355,7 +360,8 @@ impl Recorder {
             drained_m3: m3(l.drained_mm),
             residual_relative: l.residual_relative(),
             ..Budget::default()
-        }
+        };
+        (budget, m3_per_mm)
     }
 }
 
