@@ -127,6 +127,8 @@ struct ReflectionParams {
     clip_from_eye: mat4x4<f32>,
     // World position of the eye it belongs to, m; w: strength, 0 when there is none.
     eye: vec4<f32>,
+    // x: height of the mirror above the eye, m; y, z, w unused.
+    plane: vec4<f32>,
 }
 
 // What the wet look and the wet mask read.

@@ -31,6 +31,7 @@ pub const LIBRARIES: &[Library] = library![
     "drop_light",
     "wetness",
     "standing_water",
+    "ground_memory",
     "placed_water",
     "slopes",
     "waves"

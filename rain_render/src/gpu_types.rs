@@ -98,6 +98,7 @@ pub struct WaterLook {
 pub struct ReflectionParams {
     pub clip_from_eye: [[f32; 4]; 4],
     pub eye: [f32; 4],
+    pub plane: [f32; 4],
 }
 
 /// What the wet look and the wet mask read.
@@ -188,7 +189,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
         layout!(WaterLook: absorption, mud, ambient, ripples, waves),
-        layout!(ReflectionParams: clip_from_eye, eye),
+        layout!(ReflectionParams: clip_from_eye, eye, plane),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, reflection),
         layout!(MaskView: eye_from_clip, screen, surface),
         layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant_squared, g, keep, inverse_keep,

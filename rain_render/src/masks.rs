@@ -1,13 +1,13 @@
-//! Measurement masks of a view: wetness and distance of every pixel, from the scene's depth.
+//! Measurement masks of a view: wetness, distance and standing water of every pixel, from the scene's depth.
 //!
-//! Output: two R32Float targets. Only recorded when somebody asked for a mask.
+//! Output: three R32Float targets. Only recorded when somebody asked for a mask.
 
 use glam::{Mat4, Vec2};
 
 use crate::compose;
 use crate::gpu_types::{MaskView, SurfaceParams};
 
-/// Format of the wet and distance masks.
+/// Format of the wet, distance and water masks.
 pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// Pipeline and uniform of the mask pass.
@@ -16,6 +16,29 @@ pub struct MaskGpu {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
     uniform: wgpu::Buffer,
+    sampler: wgpu::Sampler,
+    /// Stands for a ground that is not there.
+    nothing: wgpu::TextureView,
+}
+
+/// What the mask pass reads of the ground; without one, the weather and the cover alone tell what is wet.
+#[derive(Debug, Clone, Copy)]
+pub struct GroundMaps<'a> {
+    /// Films and pores (Rgba16Float), see `rain_remembered`.
+    pub films: &'a wgpu::TextureView,
+    /// Levels of standing water (R32Float), see `rain_standing_water`.
+    pub levels: &'a wgpu::TextureView,
+}
+
+/// Targets of the mask pass.
+#[derive(Debug, Clone, Copy)]
+pub struct MaskTargets<'a> {
+    /// Pore saturation, 0…1.
+    pub wet: &'a wgpu::TextureView,
+    /// Distance from the eye. Units: m.
+    pub depth: &'a wgpu::TextureView,
+    /// Depth of standing water. Units: m.
+    pub water: &'a wgpu::TextureView,
 }
 
 impl MaskGpu {
@@ -27,6 +50,16 @@ impl MaskGpu {
             visibility: wgpu::ShaderStages::FRAGMENT,
             ty: wgpu::BindingType::Texture {
                 sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let colour = |binding, filterable| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable },
                 view_dimension: wgpu::TextureViewDimension::D2,
                 multisampled: false,
             },
@@ -47,6 +80,14 @@ impl MaskGpu {
                 },
                 depth(1),
                 depth(2),
+                colour(3, true),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 4,
+                    visibility: wgpu::ShaderStages::FRAGMENT,
+                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                    count: None,
+                },
+                colour(5, false),
             ],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -76,7 +117,7 @@ impl MaskGpu {
                 module: &module,
                 entry_point: Some("fragment"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[target.clone(), target],
+                targets: &[target.clone(), target.clone(), target],
             }),
             multiview_mask: None,
             cache: None,
@@ -90,10 +131,28 @@ impl MaskGpu {
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("rain masks"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+            nothing: device
+                .create_texture(&wgpu::TextureDescriptor {
+                    label: Some("rain masks: no ground"),
+                    size: wgpu::Extent3d::default(),
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: wgpu::TextureFormat::Rgba16Float,
+                    usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                    view_formats: &[],
+                })
+                .create_view(&wgpu::TextureViewDescriptor::default()),
         }
     }
 
-    /// Uploads a view and binds its depth and the cover map.
+    /// Uploads a view and binds its depth, the cover map and the ground's maps.
     ///
     /// `eye_from_clip`: clip to eye-relative world; `near_m`: near plane, m; `size_px`: target size.
     #[must_use]
@@ -107,6 +166,7 @@ impl MaskGpu {
         surface: SurfaceParams,
         scene_depth: &wgpu::TextureView,
         cover: &wgpu::TextureView,
+        ground: Option<GroundMaps<'_>>,
     ) -> wgpu::BindGroup {
         let view = MaskView {
             eye_from_clip: eye_from_clip.to_cols_array_2d(),
@@ -114,6 +174,7 @@ impl MaskGpu {
             surface,
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&view));
+        let (films, levels) = ground.map_or((&self.nothing, &self.nothing), |g| (g.films, g.levels));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain masks"),
@@ -122,18 +183,15 @@ impl MaskGpu {
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(scene_depth)),
                 entry(2, wgpu::BindingResource::TextureView(cover)),
+                entry(3, wgpu::BindingResource::TextureView(films)),
+                entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
+                entry(5, wgpu::BindingResource::TextureView(levels)),
             ],
         })
     }
 
-    /// Records the pass into the wet and distance targets.
-    pub fn encode(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        bind_group: &wgpu::BindGroup,
-        wet: &wgpu::TextureView,
-        depth: &wgpu::TextureView,
-    ) {
+    /// Records the pass into its targets.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, bind_group: &wgpu::BindGroup, targets: MaskTargets<'_>) {
         let attachment = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -147,7 +205,11 @@ impl MaskGpu {
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("rain masks"),
-            color_attachments: &[attachment(wet), attachment(depth)],
+            color_attachments: &[
+                attachment(targets.wet),
+                attachment(targets.depth),
+                attachment(targets.water),
+            ],
             depth_stencil_attachment: None,
             timestamp_writes: None,
             occlusion_query_set: None,

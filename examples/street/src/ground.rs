@@ -18,6 +18,11 @@ const ZEBRAS: [[f32; 2]; 2] = [[24.0, 27.0], [-30.0, -27.0]];
 /// Height of the road's edge below its crown where the longitudinal undulation is zero, metres.
 const EDGE_DROP: f32 = 0.065_2 + GUTTER_DEPTH;
 
+/// Fall of the pavements towards their kerbs.
+const PAVEMENT_FALL: f32 = 0.018;
+/// Length of a piece of kerb. The pavement behind it is cut at the same places, so that no crack opens. Metres.
+const KERB_STEP: f32 = 0.5;
+
 /// Gentle rise and fall along the street; it ends before the cross streets. Metres.
 fn undulation(z: f32) -> f32 {
     let wave = ops::sin(f64::from(z) / 28.0 * std::f64::consts::TAU + 0.7) as f32;
@@ -67,7 +72,7 @@ pub fn pavement_height(x: f32, z: f32) -> f32 {
         .min(ROAD_HALF_LENGTH - z.abs())
         .clamp(0.0, FACADE_X - ROAD_HALF_WIDTH);
     let settled = 0.008 * (value(77, x / 64.0, z / 64.0, 48, 48) - 0.5) * smoothstep(0.2, 0.6, inland);
-    KERB_HEIGHT - EDGE_DROP + undulation(z) + 0.018 * inland + settled - sunk(&HOLLOWS, x, z)
+    KERB_HEIGHT - EDGE_DROP + undulation(z) + PAVEMENT_FALL * inland + settled - sunk(&HOLLOWS, x, z)
 }
 
 /// Height of the open ground at (x, z): carriageway, pavement or square. Metres.
@@ -86,7 +91,7 @@ pub fn ground_height(x: f32, z: f32) -> f32 {
 }
 
 fn far_pavement_height(z: f32) -> f32 {
-    road_as_built(0.0, CROSS_FAR_Z) + KERB_HEIGHT + 0.018 * (z.abs() - CROSS_FAR_Z)
+    road_as_built(0.0, CROSS_FAR_Z) + KERB_HEIGHT + PAVEMENT_FALL * (z.abs() - CROSS_FAR_Z)
 }
 
 fn square_height(x: f32, z: f32) -> f32 {
@@ -170,15 +175,15 @@ fn road_surface(x: f32, z: f32) -> (Mat, Option<Vec2>) {
 }
 
 fn kerb_run(mesh: &mut Mesh, f: &Frame, length: f32, top: impl Fn(Vec3) -> f32) {
-    // (distance behind the kerb's face, height below its top): face, rounded edge, top.
+    // (distance behind the kerb's face, height above its front): face, rounded edge, top, up to the pavement's edge.
     let profile = [
         (0.0, -0.19),
         (0.0, -0.022),
         (0.008, -0.006),
         (0.024, 0.0),
-        (KERB_WIDTH, 0.0),
+        (KERB_WIDTH, PAVEMENT_FALL * KERB_WIDTH),
     ];
-    let zs = steps(0.0, length, 0.5);
+    let zs = steps(0.0, length, KERB_STEP);
     let mut girth = vec![0.0_f32];
     for w in profile.windows(2) {
         let d = vec2(w[1].0 - w[0].0, w[1].1 - w[0].1).length();
@@ -222,16 +227,20 @@ pub fn build(parts: &mut Parts) {
     let xs: Vec<f32> = half.iter().rev().map(|x| -x).chain(half).collect();
     let zs = steps(-ROAD_HALF_LENGTH, ROAD_HALF_LENGTH, 0.25);
     lattice_mesh(parts, &xs, &zs, road_height, road_surface);
+    // The pavements' rows end where the kerbs' pieces do, but for the ends, which lie behind the kerbs across.
+    let edge = ROAD_HALF_LENGTH - KERB_WIDTH;
+    let mut rows = steps(-ROAD_HALF_LENGTH, ROAD_HALF_LENGTH, KERB_STEP);
+    let last = rows.len() - 1;
+    (rows[0], rows[last]) = (-edge, edge);
     for sign in [-1.0_f32, 1.0] {
         let mirror = |low: f32, high: f32, step: f32| {
             let (a, b) = (low * sign, high * sign);
             steps(a.min(b), a.max(b), step)
         };
-        let edge = ROAD_HALF_LENGTH - KERB_WIDTH;
         let kerb_x = ROAD_HALF_WIDTH + KERB_WIDTH;
         let pavement = |_: f32, _: f32| (Mat::Slabs, None);
         let across = mirror(kerb_x, FACADE_X + 0.05, 0.5);
-        lattice_mesh(parts, &across, &steps(-edge, edge, 0.5), pavement_height, pavement);
+        lattice_mesh(parts, &across, &rows, pavement_height, pavement);
         // Cross street beyond this end of the row, its far pavement, and the strips along the corner houses.
         let whole = steps(-CROSS_HALF_X, CROSS_HALF_X, 1.0);
         lattice_mesh(

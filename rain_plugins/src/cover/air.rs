@@ -2,11 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use bevy::math::DVec2;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::*;
 use rain_core::cover::air::{Air, AirGrid, cell_of};
-use rain_core::cover::{CoverScene, CoverSettings as CoreCoverSettings, FallSlope, OccluderId};
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
 use rain_ecs::prelude::*;
 
@@ -20,11 +18,11 @@ pub struct AirAroundView {
     pub closed_in: Option<Entity>,
 }
 
-/// The scene's surfaces on the CPU: those whose material is opaque and whose mesh keeps its data.
+/// What closes air, on the CPU: surfaces whose material is opaque or cut out and whose mesh keeps its data. What rain
+/// reaches is the simulation's [`CoverField`] to say.
 #[derive(Resource, Default)]
 pub(super) struct Surroundings {
     air: AirGrid,
-    cover: Option<CoverScene>,
     owners: BTreeSet<u64>,
     /// Entities not yet taken in, or moved.
     stale: bool,
@@ -35,22 +33,14 @@ pub(super) struct Surroundings {
     open: Option<IVec3>,
     /// What moved lately: left out of the walls until it stands still.
     moving: BTreeSet<u64>,
+    /// Version of the cover that the last flood asked.
+    cover_version: Option<u64>,
 }
 
 type ChangedSurface = (
     With<Mesh3d>,
     Or<(Changed<GlobalTransform>, Changed<Mesh3d>, Changed<InheritedVisibility>)>,
 );
-
-impl Surroundings {
-    /// Whether the fall direction has left that of the surfaces.
-    fn turned(&self, field: &RainfallField) -> bool {
-        let Some(cover) = &self.cover else { return true };
-        let wind = field.wind_m_s();
-        FallSlope::new(DVec2::new(wind.x, wind.z), field.mean_inverse_velocity_s_m())
-            .is_ok_and(|slope| cover.slope().angle_to(&slope) > std::f64::consts::PI / 180.0)
-    }
-}
 
 /// A flood stays valid while the eye is this close to where it started. Units: cells.
 const SAME_PLACE: i32 = 8;
@@ -67,6 +57,7 @@ pub(super) fn judge_air(
     mut surroundings: ResMut<Surroundings>,
     mut judged: ResMut<AirAroundView>,
     field: Res<RainfallField>,
+    cover: Option<Res<CoverField>>,
     meshes: Res<Assets<Mesh>>,
     materials: Res<Assets<StandardMaterial>>,
     views: Query<(Entity, &GlobalTransform, &Camera), With<RainView>>,
@@ -76,20 +67,23 @@ pub(super) fn judge_air(
 ) {
     let gone = removed.read().count() > 0;
     judged.closed_in = None;
-    if !field.is_raining() {
+    let Some(cover) = cover.filter(|_| field.is_raining()) else {
         surroundings.stale = true;
         return;
-    }
+    };
     let Some((view, at, _)) = views.iter().find(|(_, _, c)| c.is_active) else {
         return;
     };
     let eye = at.translation().as_dvec3();
     let s = &mut *surroundings;
     // In a still scene no mesh is looked at twice.
-    if s.stale || gone || !s.moving.is_empty() || !changed.is_empty() || s.turned(&field) {
-        take_in(s, &field, &meshes, &materials, &surfaces);
+    if s.stale || gone || !s.moving.is_empty() || !changed.is_empty() {
+        take_in(s, &meshes, &materials, &surfaces);
     }
-    let Some(cover) = &s.cover else { return };
+    if s.cover_version.replace(cover.version()) != Some(cover.version()) {
+        s.flooded = None;
+        s.open = None;
+    }
     let cell = cell_of(eye);
     if s.open == Some(cell) {
         return;
@@ -105,7 +99,7 @@ pub(super) fn judge_air(
     let inverse_speed = field.mean_inverse_velocity_s_m();
     let range = RANGE_CAP_M * FADE_END + f64::from(SAME_PLACE) * rain_core::cover::air::AIR_CELL_M;
     // Without an answer for a point, rain counts as reaching it.
-    let reached = |p| !cover.covered(p, inverse_speed).unwrap_or(false);
+    let reached = |p| !cover.scene().covered(p, inverse_speed).unwrap_or(false);
     s.start = cell;
     s.open = None;
     s.flooded = match s.air.flood(eye, range, reached) {
@@ -118,27 +112,14 @@ pub(super) fn judge_air(
     judged.closed_in = s.flooded.is_some().then_some(view);
 }
 
-/// Brings the CPU surfaces up to date with what was added, moved or removed.
+/// Brings the walls up to date with what was added, moved or removed.
 fn take_in(
     s: &mut Surroundings,
-    field: &RainfallField,
     meshes: &Assets<Mesh>,
     materials: &Assets<StandardMaterial>,
     surfaces: &Query<Surface>,
 ) {
-    let wind = field.wind_m_s();
-    let Ok(slope) = FallSlope::new(DVec2::new(wind.x, wind.z), field.mean_inverse_velocity_s_m()) else {
-        return;
-    };
-    if s.cover.is_none() {
-        s.cover = CoverScene::new(CoreCoverSettings::default(), slope).ok();
-        s.stale = true;
-    }
-    let Some(cover) = s.cover.as_mut() else { return };
     let mut changed = false;
-    if cover.slope().angle_to(&slope) > std::f64::consts::PI / 180.0 && cover.set_slope(slope).is_ok() {
-        changed = true;
-    }
     let mut present = BTreeSet::new();
     let mut unresolved = false;
     for (entity, transform, mesh, visible, original) in surfaces {
@@ -159,7 +140,6 @@ fn take_in(
             s.moving.insert(owner);
             if known {
                 s.air.remove(owner);
-                let _ = cover.remove(OccluderId(owner));
                 s.owners.remove(&owner);
                 changed = true;
             }
@@ -167,33 +147,23 @@ fn take_in(
         }
         if s.moving.remove(&owner) || !known {
             let Some(triangles) = meshes.get(&mesh.0).and_then(|m| triangles_of(m, &transform)) else {
-                // No data on the CPU: it can neither cover nor close here, so the air counts as open.
+                // No data on the CPU: it cannot close here, so the air counts as open.
                 present.remove(&owner);
                 continue;
             };
-            let id = OccluderId(owner);
-            let taken = if known {
-                cover.replace(id, &triangles)
-            } else {
-                cover.add(id, &triangles)
-            };
-            if taken.is_ok() {
-                s.air.set(owner, triangles);
-                s.owners.insert(owner);
-                changed = true;
-            }
+            s.air.set(owner, triangles);
+            s.owners.insert(owner);
+            changed = true;
         }
     }
     let gone: Vec<u64> = s.owners.difference(&present).copied().collect();
     for owner in gone {
         s.air.remove(owner);
-        let _ = cover.remove(OccluderId(owner));
         s.owners.remove(&owner);
         changed = true;
     }
     s.stale = unresolved;
     if changed {
-        cover.update();
         s.flooded = None;
         s.open = None;
     }

@@ -18,7 +18,7 @@ use crate::rainfall::RainView;
 use crate::render_adapter::{RenderApp, cover_camera, cover_image};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
-use crate::surface::SurfaceState;
+use crate::surface::{SceneGeometryPlugin, SurfaceState};
 
 /// Settings of the cover map. Changes take effect with the next redraw, `texels` only before the app's first update.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
@@ -81,6 +81,7 @@ impl Plugin for CoverPlugin {
         if app.get_sub_app(RenderApp).is_none() {
             return; // a server draws no map
         }
+        SceneGeometryPlugin::add_to(app);
         app.init_resource::<CoverSettings>()
             .register_type::<CoverSettings>()
             .register_type::<RainCoverView>()

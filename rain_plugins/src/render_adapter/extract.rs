@@ -71,7 +71,7 @@ pub(super) struct ExtractedSurface {
     pub images: Option<ExtractedWaterImages>,
     pub levels: Option<WaterLevels>,
     pub films: GroundFilms,
-    pub mirror: Option<(Mat4, Vec3)>,
+    pub mirror: Option<(Mat4, Vec3, f32)>,
     pub mirror_strength: f32,
     pub buffer: AssetId<ShaderBuffer>,
     pub anchor: Vec3,

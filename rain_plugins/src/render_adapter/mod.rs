@@ -44,10 +44,12 @@ use crate::surface::RainMirrorView;
 pub struct RainMasks {
     /// Coverage by streaks (R16Float).
     pub rain: Handle<Image>,
-    /// Pore saturation (R32Float).
+    /// Pore saturation (R32Float): of the ground what it remembers, elsewhere the weather's where rain reaches.
     pub wet: Handle<Image>,
     /// Distance from the eye, m (R32Float).
     pub depth: Handle<Image>,
+    /// Depth of the standing water that [`crate::surface::WaterLevels`] know of, m (R32Float).
+    pub water: Handle<Image>,
 }
 
 impl SyncComponent for RainMirrorView {
@@ -196,7 +198,7 @@ pub(crate) fn mirror_camera(target: Handle<Image>) -> impl Bundle {
 pub enum MaskKind {
     /// Coverage by streaks: half floats, 0…1.
     Rain,
-    /// Pore saturation (floats, 0…1) or distance (floats, m).
+    /// Pore saturation (floats, 0…1), distance or depth of water (floats, m).
     Surface,
 }
 

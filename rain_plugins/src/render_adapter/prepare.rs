@@ -14,7 +14,7 @@ use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa};
 use rain_render::cover::open_sky;
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams};
-use rain_render::masks::MaskGpu;
+use rain_render::masks::{GroundMaps, MaskGpu};
 use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
 use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
 use rain_render::slope_mips::SlopeMipsGpu;
@@ -169,9 +169,12 @@ fn surface_params(
         });
     let reflection = surface
         .mirror
-        .map_or_else(ReflectionParams::default, |(clip_from_world, at)| ReflectionParams {
-            clip_from_eye: (clip_from_world * Mat4::from_translation(eye)).to_cols_array_2d(),
-            eye: at.extend(surface.mirror_strength).to_array(),
+        .map_or_else(ReflectionParams::default, |(clip_from_world, at, height)| {
+            ReflectionParams {
+                clip_from_eye: (clip_from_world * Mat4::from_translation(eye)).to_cols_array_2d(),
+                eye: at.extend(surface.mirror_strength).to_array(),
+                plane: [height - eye.y, 0.0, 0.0, 0.0],
+            }
         });
     let mut water = surface.water;
     if waves.ripple_side_m > 0.0 {
@@ -239,6 +242,16 @@ pub(super) fn prepare_rain(
     {
         gpu.reflection_target = Some(gpu.reflection.bind(device, &kept.texture));
     }
+    let ground_maps = scene
+        .surface
+        .as_ref()
+        .filter(|s| s.shown)
+        .and_then(|s| s.images)
+        .and_then(|ids| Some((images.get(ids.films)?, images.get(ids.levels)?)));
+    let ground_maps = ground_maps.map(|(films, levels)| GroundMaps {
+        films: &films.texture_view,
+        levels: &levels.texture_view,
+    });
     gpu.mask_bind_groups.clear();
     gpu.views.retain(|entity, _| views.contains(*entity));
     for (entity, view, camera, rain, prepass, msaa) in &views {
@@ -261,6 +274,7 @@ pub(super) fn prepare_rain(
                 surface_params(eye),
                 depth,
                 &cover.texture_view,
+                ground_maps,
             );
             gpu.mask_bind_groups.insert(entity, bind_group);
         }

@@ -9,6 +9,7 @@ use bevy::render::render_resource::{PipelineCache, StoreOp};
 use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
+use rain_render::masks::MaskTargets;
 use rain_render::rainfall::{encode_coverage, encode_draw, encode_project};
 use rain_render::reflection::encode_reflection_mips;
 
@@ -157,10 +158,11 @@ pub(super) fn rainfall(
     }
 
     let Some(masks) = &rain.masks else { return };
-    let (Some(rain_mask), Some(wet_mask), Some(depth_mask)) = (
+    let (Some(rain_mask), Some(wet_mask), Some(depth_mask), Some(water_mask)) = (
         images.get(&masks.rain),
         images.get(&masks.wet),
         images.get(&masks.depth),
+        images.get(&masks.water),
     ) else {
         return;
     };
@@ -191,8 +193,11 @@ pub(super) fn rainfall(
         gpu.masks.encode(
             ctx.command_encoder(),
             bind_group,
-            &wet_mask.texture_view,
-            &depth_mask.texture_view,
+            MaskTargets {
+                wet: &wet_mask.texture_view,
+                depth: &depth_mask.texture_view,
+                water: &water_mask.texture_view,
+            },
         );
     }
     report.recorded(PassName::Masks);

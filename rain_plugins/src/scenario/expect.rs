@@ -7,7 +7,7 @@ use super::expectation::{
     WeatherQuantity,
 };
 use super::file::{Mask, Scenario};
-use super::masks::{coverage_from_texel, depth_from_texel};
+use super::masks::{coverage_from_texel, depth_from_texel, water_from_texel};
 use super::report::{Budget, Counts, ExpectationRow, PassRow, brief};
 use super::timeline::{Timeline, surface_name};
 
@@ -22,6 +22,8 @@ pub struct CaptureMasks<'a> {
     pub wet: Option<&'a [u16]>,
     /// View distance in mm, 65535 = farther.
     pub depth: Option<&'a [u16]>,
+    /// Depth of standing water in 0.01 mm.
+    pub water: Option<&'a [u16]>,
 }
 
 impl<'a> CaptureMasks<'a> {
@@ -30,6 +32,7 @@ impl<'a> CaptureMasks<'a> {
             Mask::Rain => self.rain,
             Mask::Wet => self.wet,
             Mask::Depth => self.depth,
+            Mask::Water => self.water,
         }?;
         (texels.len() == self.size[0] as usize * self.size[1] as usize).then_some(texels)
     }
@@ -297,6 +300,7 @@ fn statistic(check: &MaskCheck, masks: &CaptureMasks) -> f64 {
     let value_of = |texel: u16| match check.mask {
         Mask::Rain | Mask::Wet => coverage_from_texel(texel),
         Mask::Depth => depth_from_texel(texel),
+        Mask::Water => water_from_texel(texel),
     };
     let [width, height] = masks.size.map(|s| s as usize);
     let range = |from: f64, to: f64, size: usize| {

@@ -52,6 +52,7 @@ fn run(expectations: Vec<Expectation>) -> Vec<ExpectationRow> {
                 rain: Some(&rain),
                 wet: None,
                 depth: Some(&depth),
+                water: None,
             },
         );
     }

@@ -50,7 +50,7 @@ pub enum At {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Check {
-    /// A statistic of a mask. Unit: the mask's (1 for `Rain` and `Wet`, m for `Depth`), or a fraction.
+    /// A statistic of a mask. Unit: the mask's (1 for `Rain` and `Wet`, m for `Depth` and `Water`), or a fraction.
     Mask(MaskCheck),
     /// The statistic at capture `to` is more than at `from`, by this factor or more.
     Rises(Change),

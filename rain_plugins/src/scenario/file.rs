@@ -23,6 +23,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
+pub use super::captures::{Captures, RunUp};
 use super::expectation::Expectation;
 use super::weather::Weather;
 
@@ -45,6 +46,8 @@ pub struct Scenario {
     /// What stands in the world: a single file name, or a list of parts. Domain: at most 4096 parts. Default: none.
     #[serde(deserialize_with = "file_or_parts")]
     pub scene: Vec<ScenePart>,
+    /// Grates that take water off the ground. Domain: at most 4096. Default: none.
+    pub drains: Vec<DrainGrate>,
     /// Sky, sun, lamps, fog and exposure.
     pub environment: Environment,
     /// Rain, wind and air over time.
@@ -57,6 +60,8 @@ pub struct Scenario {
     pub rain: RainSettings,
     /// When pictures are taken. Default: none.
     pub captures: Captures,
+    /// Captures before which the view is drawn for a while. Domain: each capture at most once. Default: none.
+    pub run_ups: Vec<RunUp>,
     /// What is written.
     pub outputs: Outputs,
     /// Horizontal bounds of the water ledger. Default: those of the scene.
@@ -78,12 +83,14 @@ impl Default for Scenario {
             seed: 1,
             duration_s: 600.0,
             scene: Vec::new(),
+            drains: Vec::new(),
             environment: Environment::default(),
             weather: Weather::default(),
             vehicles: Vec::new(),
             camera: Camera::default(),
             rain: RainSettings::default(),
             captures: Captures::default(),
+            run_ups: Vec::new(),
             outputs: Outputs::default(),
             domain: None,
             warm_up_frames: 3,
@@ -151,6 +158,28 @@ fn file_or_parts<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Scene
         }
     }
     deserializer.deserialize_any(FileOrParts)
+}
+
+/// A grate in the ground, against a kerb: a weir along its edge, and an orifice once it is under water.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DrainGrate {
+    /// Where: x and z. Units: m. Domain: each within ±1 000 000. Required.
+    pub position: [f64; 2],
+    /// Length of its edge that water reaches. Units: m. Domain: [0, 1000]. Default: 1.1, of 0.3 by 0.5 m at a kerb.
+    #[serde(default = "grate_edge")]
+    pub perimeter_m: f64,
+    /// Area of its openings. Units: m². Domain: [0, 1000]. Default: 0.06.
+    #[serde(default = "grate_openings")]
+    pub area_m2: f64,
+}
+
+fn grate_edge() -> f64 {
+    1.1
+}
+
+fn grate_openings() -> f64 {
+    0.06
 }
 
 /// Light and air that are not rain.
@@ -416,83 +445,17 @@ impl Default for RainSettings {
     }
 }
 
-/// When pictures are taken. Domain: at most 10 000, strictly rising, within the duration.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Captures {
-    /// At these times. Units: s.
-    Times(Vec<f64>),
-    /// Evenly, both ends included; a single one is taken at the start.
-    Even {
-        /// The first. Units: s. Domain: [0, `end_s`].
-        start_s: f64,
-        /// The last. Units: s. Domain: [`start_s`, `duration_s`].
-        end_s: f64,
-        /// How many. Domain: 0…10 000.
-        count: u32,
-    },
-}
-
-impl Default for Captures {
-    fn default() -> Self {
-        Self::Times(Vec::new())
-    }
-}
-
-impl Captures {
-    /// How many captures there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Times(times) => times.len(),
-            Self::Even { count, .. } => *count as usize,
-        }
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The times, in order. Units: s.
-    #[must_use]
-    pub fn times_s(&self) -> Vec<f64> {
-        match self {
-            Self::Times(times) => times.clone(),
-            Self::Even { start_s, end_s, count } => (0..*count)
-                .map(|i| match count.saturating_sub(1) {
-                    0 => *start_s,
-                    // The last is the end itself, not the end with a rounding error past the duration.
-                    last if i == last => *end_s,
-                    last => start_s + (end_s - start_s) * f64::from(i) / f64::from(last),
-                })
-                .collect(),
-        }
-    }
-
-    /// `count` captures spread evenly from the first of these to the last (`rain run --frames`); with fewer than two
-    /// here, from there (or the start) to the end of the duration.
-    #[must_use]
-    pub fn resampled(&self, count: u32, duration_s: f64) -> Self {
-        let times = self.times_s();
-        Self::Even {
-            start_s: times.first().copied().unwrap_or(0.0),
-            end_s: times.last().copied().filter(|_| times.len() > 1).unwrap_or(duration_s),
-            count,
-        }
-    }
-}
-
 /// A picture of numbers, one per pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Mask {
     /// Share of the pixel covered by streaks and billboards (no time fraction, no contrast). Units: none, [0, 1].
     Rain,
-    /// Pore saturation. Units: none, [0, 1].
+    /// Pore saturation: of the ground what it remembers, elsewhere the weather's where rain reaches. Units: none, [0, 1].
     Wet,
     /// Distance from the eye. Units: m, saturating at 65.535.
     Depth,
+    /// Depth of the water that stands in the ground's hollows. Units: m, saturating at 0.65535.
+    Water,
 }
 
 impl Mask {
@@ -503,6 +466,7 @@ impl Mask {
             Self::Rain => "rain",
             Self::Wet => "wet",
             Self::Depth => "depth",
+            Self::Water => "water",
         }
     }
 }

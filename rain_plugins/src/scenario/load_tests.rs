@@ -343,6 +343,30 @@ fn values_out_of_domain_name_the_field() {
         ),
         ("max: (20, 30)", "max: (20, -30)", "domain.max[1]", "above -30"),
         ("warm_up_frames: 5", "warm_up_frames: 1001", "warm_up_frames", "1000"),
+        (
+            "warm_up_frames: 5",
+            "drains: [(position: (0, 0), area_m2: -1)]",
+            "drains[0].area_m2",
+            "0 to 1000 m²",
+        ),
+        (
+            "warm_up_frames: 5",
+            "run_ups: [(capture: 4, seconds: 1)]",
+            "run_ups[0].capture",
+            "0 to 3",
+        ),
+        (
+            "warm_up_frames: 5",
+            "run_ups: [(capture: 1, seconds: 1), (capture: 1, seconds: 2)]",
+            "run_ups[1].capture",
+            "each once",
+        ),
+        (
+            "warm_up_frames: 5",
+            "run_ups: [(capture: 3, seconds: 61)]",
+            "run_ups[0].seconds",
+            "0 to 60 s",
+        ),
         ("Capture(1)", "Capture(4)", "expectations[0].at", "0 to 3"),
         ("from: 1, to: 3", "from: 1, to: 9", "expectations[4].check.to", "0 to 3"),
         (

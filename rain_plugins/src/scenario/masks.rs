@@ -74,6 +74,19 @@ pub fn depth_from_texel(texel: u16) -> f64 {
     f64::from(texel) / 1000.0
 }
 
+/// Texel of a depth of water in metres, rounded to 0.01 mm; from 0.65535 m on 65535, not a number 0.
+#[must_use]
+pub fn texel_from_water(depth_m: f32) -> u16 {
+    // The cast takes NaN to 0 and saturates.
+    (depth_m * 1e5 + 0.5) as u16
+}
+
+/// Depth of water of a texel. Units: m; 0.65535 stands for anything deeper.
+#[must_use]
+pub fn water_from_texel(texel: u16) -> f64 {
+    f64::from(texel) / 1e5
+}
+
 /// The PNG file's bytes.
 ///
 /// # Errors

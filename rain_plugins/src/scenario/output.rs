@@ -149,7 +149,7 @@ fn is_ours(name: &str) -> bool {
     let (number, mask) = stem.split_once('_').map_or((stem, None), |(n, m)| (n, Some(m)));
     number.len() >= 4
         && number.bytes().all(|b| b.is_ascii_digit())
-        && mask.is_none_or(|m| ["rain", "wet", "depth"].contains(&m))
+        && mask.is_none_or(|m| ["rain", "wet", "depth", "water"].contains(&m))
 }
 
 #[cfg(test)]

@@ -128,7 +128,11 @@ pub fn run(
     let mut frame_ms = Vec::new();
     record.sample(&mut session);
     for (index, &time_s) in captures.iter().enumerate() {
-        record.advance(&mut session, time_s)?;
+        let run_up = scenario.run_ups.iter().find(|r| r.capture == index);
+        record.advance(&mut session, time_s - run_up.map_or(0.0, |r| r.seconds))?;
+        if let Some(run_up) = run_up {
+            session.run_up(time_s, run_up.seconds)?;
+        }
         let capture = session.capture(time_s)?;
         record.sample(&mut session);
         record.timeline.captures_s.push(time_s);
@@ -150,6 +154,7 @@ pub fn run(
                 rain: capture.mask(Mask::Rain),
                 wet: capture.mask(Mask::Wet),
                 depth: capture.mask(Mask::Depth),
+                water: capture.mask(Mask::Water),
             },
         );
         progress(Progress::Captures {
@@ -238,8 +243,9 @@ fn apply(scenario: &mut Scenario, options: &RunOptions) -> Result<(), RunError> 
             });
         }
         scenario.captures = scenario.captures.resampled(count, scenario.duration_s);
-        // Expectations name captures of the file's own list.
+        // Expectations and run-ups name captures of the file's own list.
         scenario.expectations.clear();
+        scenario.run_ups.clear();
     }
     if let Some(size) = options.size {
         scenario.outputs.size = size;

@@ -13,7 +13,7 @@ use image::RgbImage;
 use rain_ecs::prelude::*;
 
 use super::file::{Mask, Scenario};
-use super::masks::{texel_from_coverage, texel_from_depth};
+use super::masks::{texel_from_coverage, texel_from_depth, texel_from_water};
 use super::run::RunError;
 use super::stage::{self, Stage};
 use super::{headless, probe};
@@ -22,6 +22,9 @@ use crate::report::{RainReport, Report as PassReport};
 
 /// Time between the frames that warm a view up. Units: ns.
 const FRAME_NS: u64 = 16_666_667;
+
+/// Frames a second in the run-up to a capture.
+const RUN_UP_FPS: f64 = 30.0;
 
 /// Updates after which a picture must have come back from the GPU.
 const PATIENCE_UPDATES: u32 = 50;
@@ -155,6 +158,22 @@ impl Session {
         Ok(())
     }
 
+    /// Draws the view for `seconds` up to the frames that a capture at `time_s` itself draws.
+    ///
+    /// # Errors
+    /// When the renderer stops.
+    pub fn run_up(&mut self, time_s: f64, seconds: f64) -> Result<(), RunError> {
+        let end_s = time_s - f64::from(self.scenario.warm_up_frames.max(1)) * FRAME_NS as f64 * 1e-9;
+        let start_s = end_s - seconds;
+        if start_s > self.now_s() {
+            self.advance(start_s)?;
+        }
+        if end_s > self.now_s() {
+            self.play(end_s, RUN_UP_FPS)?;
+        }
+        Ok(())
+    }
+
     /// Goes to `time_s`, warms the view up and takes the picture and the masks of exactly that moment.
     ///
     /// # Errors
@@ -187,7 +206,10 @@ impl Session {
             .observe(|done: On<ScreenshotCaptured>, mut out: ResMut<Pictured>| out.0 = Some(done.image.clone()));
         let mut readers = Vec::new();
         if let Some(masks) = &stage.masks {
-            for (i, image) in [&masks.rain, &masks.wet, &masks.depth].into_iter().enumerate() {
+            for (i, image) in [&masks.rain, &masks.wet, &masks.depth, &masks.water]
+                .into_iter()
+                .enumerate()
+            {
                 let sink = returned.clone();
                 let reader = world
                     .spawn(Readback::texture(image.clone()))
@@ -230,6 +252,7 @@ impl Session {
                     Mask::Rain => 0,
                     Mask::Wet => 1,
                     Mask::Depth => 2,
+                    Mask::Water => 3,
                 };
                 let (_, data) = bytes.iter().find(|(k, _)| *k == kind).ok_or_else(lost)?;
                 masks.push((*mask, texels(*mask, data, self.scenario.outputs.size)));
@@ -301,6 +324,7 @@ fn texels(mask: Mask, data: &[u8], [width, height]: [u32; 2]) -> Vec<u16> {
                 (Mask::Rain, &[a, b]) => texel_from_coverage(half::f16::from_le_bytes([a, b]).to_f32()),
                 (Mask::Wet, &[a, b, c, d]) => texel_from_coverage(f32::from_le_bytes([a, b, c, d])),
                 (Mask::Depth, &[a, b, c, d]) => texel_from_depth(f32::from_le_bytes([a, b, c, d])),
+                (Mask::Water, &[a, b, c, d]) => texel_from_water(f32::from_le_bytes([a, b, c, d])),
                 _ => 0,
             });
         }

@@ -16,6 +16,8 @@ use bevy::render::render_resource::{
     Extent3d, TextureDimension, TextureFormat, TextureUsages, TextureViewDescriptor, TextureViewDimension,
 };
 use bevy::world_serialization::{WorldAssetRoot, WorldInstanceReady};
+use rain_core::surface::Grate;
+use rain_core::surface::basins::{Drain, Inlet};
 use rain_ecs::prelude::*;
 
 use super::file::{Scenario, Sky};
@@ -24,7 +26,7 @@ use super::run::RunError;
 use super::sky::{Cube, Handedness, SkyModel, generate};
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
-use crate::surface::{KeepDry, MovesInRain, PlanarReflection};
+use crate::surface::{KeepDry, MovesInRain, PlanarReflection, WaterLevels};
 use crate::waves::WaterDisturber;
 
 /// Where the pictures come from.
@@ -51,8 +53,15 @@ pub(super) struct OnPath {
 #[derive(Component)]
 struct Wheel {
     vehicle: Entity,
-    rest: Quat,
+    rest: Transform,
+    /// Its middle in the vehicle's frame.
+    place: Vec3,
+    /// Units: m.
+    radius_m: f32,
 }
+
+/// How far springs let a wheel follow the ground. Units: m.
+const SPRING_M: f32 = 0.1;
 
 /// The camera's way.
 #[derive(Resource)]
@@ -233,6 +242,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
         rain: images.add(mask_image(MaskKind::Rain, width, height)),
         wet: images.add(mask_image(MaskKind::Surface, width, height)),
         depth: images.add(mask_image(MaskKind::Surface, width, height)),
+        water: images.add(mask_image(MaskKind::Surface, width, height)),
     });
     let brightness = sky.zenith_luminance_cd_m2 as f32;
     let mut camera = world.spawn((
@@ -384,11 +394,18 @@ pub(super) fn dress(app: &mut App, scenario: &Scenario) {
             }
             let is_wheel = world.get::<Name>(entity).is_some_and(|n| n.starts_with(&prefix));
             if is_wheel && let Some(transform) = world.get::<Transform>(entity) {
-                let rest = transform.rotation;
-                let scale = world.get::<GlobalTransform>(entity).map_or(1.0, |t| t.scale().x);
-                let radius_m = world.get::<OnPath>(vehicle).map_or(0.3, |v| v.wheel_radius_m as f32) * scale;
+                let rest = *transform;
+                let global = |e: Entity| world.get::<GlobalTransform>(e).copied().unwrap_or_default();
+                let place = global(entity).reparented_to(&global(vehicle)).translation;
+                let radius_m = world.get::<OnPath>(vehicle).map_or(0.3, |v| v.wheel_radius_m as f32);
+                let wheel = Wheel {
+                    vehicle,
+                    rest,
+                    place,
+                    radius_m,
+                };
                 let disturber = WaterDisturber { radius_m, ..default() };
-                world.entity_mut(entity).insert((Wheel { vehicle, rest }, disturber));
+                world.entity_mut(entity).insert((wheel, disturber));
             }
         }
     }
@@ -420,12 +437,18 @@ pub(super) fn pose(app: &mut App, time_s: f64) {
         };
         // A vehicle that stands must not count as moved.
         transform.set_if_neq(next);
-        turned.push((entity, wheel_angle_rad(pose.distance_m, vehicle.wheel_radius_m)));
+        turned.push((entity, next, wheel_angle_rad(pose.distance_m, vehicle.wheel_radius_m)));
     }
+    let ground = world.get_resource::<WaterLevels>().cloned().unwrap_or_default();
     for (wheel, mut transform) in world.query::<(&Wheel, &mut Transform)>().iter_mut(world) {
-        if let Some((_, angle)) = turned.iter().find(|(v, _)| *v == wheel.vehicle) {
-            let mut next = *transform;
-            next.rotation = wheel.rest * Quat::from_rotation_x((angle % std::f64::consts::TAU) as f32);
+        if let Some((_, vehicle, angle)) = turned.iter().find(|(v, ..)| *v == wheel.vehicle) {
+            let mut next = wheel.rest;
+            next.rotation *= Quat::from_rotation_x((angle % std::f64::consts::TAU) as f32);
+            let at = vehicle.transform_point(wheel.place);
+            let sunk = ground
+                .ground_at(at.x.into(), at.z.into())
+                .map_or(0.0, |height| height + wheel.radius_m - at.y);
+            next.translation.y += sunk.clamp(-SPRING_M, SPRING_M) / vehicle.scale.y;
             transform.set_if_neq(next);
         }
     }
@@ -461,6 +484,18 @@ pub(super) fn weather(app: &mut App, scenario: &Scenario) -> Result<(), RunError
         super::weather::WeatherMode::Physical => WeatherMode::Physical,
         super::weather::WeatherMode::Artist => WeatherMode::Artist,
     };
+    app.world_mut().resource_mut::<SurfaceSettings>().drains = scenario
+        .drains
+        .iter()
+        .map(|drain| Drain {
+            x_m: drain.position[0],
+            z_m: drain.position[1],
+            inlet: Inlet::Grate(Grate {
+                perimeter_m: drain.perimeter_m,
+                area_m2: drain.area_m2,
+            }),
+        })
+        .collect();
     app.world_mut().spawn((
         Name::new("weather"),
         Weather::default(),

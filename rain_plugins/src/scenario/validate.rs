@@ -113,6 +113,13 @@ impl Scenario {
             number(&format!("{at}.yaw_deg"), part.yaw_deg, -36_000.0, 36_000.0, "degrees")?;
             number(&format!("{at}.scale"), part.scale, 1e-4, 1e4, "")?;
         }
+        count("drains", self.drains.len(), MAX_PARTS, "drains")?;
+        for (i, drain) in self.drains.iter().enumerate() {
+            let at = format!("drains[{i}]");
+            numbers(&format!("{at}.position"), &drain.position, -WORLD_M, WORLD_M, "m")?;
+            number(&format!("{at}.perimeter_m"), drain.perimeter_m, 0.0, 1000.0, "m")?;
+            number(&format!("{at}.area_m2"), drain.area_m2, 0.0, 1000.0, "m²")?;
+        }
         environment(&self.environment)?;
         self.check_weather()?;
         self.check_vehicles()?;
@@ -127,6 +134,7 @@ impl Scenario {
         number("rain.contrast", self.rain.contrast, 1.0, 32.0, "")?;
         number("rain.exposure_s", self.rain.exposure_s, 5e-4, 0.25, "s")?;
         self.check_captures()?;
+        self.check_run_ups()?;
         self.check_outputs()?;
         self.check_domain()?;
         if self.warm_up_frames > 1000 {
@@ -233,6 +241,23 @@ impl Scenario {
         Ok(())
     }
 
+    fn check_run_ups(&self) -> Checked {
+        let mut seen = BTreeSet::new();
+        for (i, run_up) in self.run_ups.iter().enumerate() {
+            let at = format!("run_ups[{i}]");
+            if run_up.capture >= self.captures.len() || !seen.insert(run_up.capture) {
+                let last = self.captures.len().saturating_sub(1);
+                return problem(
+                    format!("{at}.capture"),
+                    run_up.capture,
+                    format!("0 to {last}, each once"),
+                );
+            }
+            number(&format!("{at}.seconds"), run_up.seconds, 0.0, 60.0, "s")?;
+        }
+        Ok(())
+    }
+
     fn check_outputs(&self) -> Checked {
         for (i, size) in self.outputs.size.iter().enumerate() {
             if *size == 0 || *size > MAX_SIZE {
@@ -323,10 +348,10 @@ impl Scenario {
             );
         }
         if let Statistic::FractionAbove(level) = check.statistic {
-            let (max, unit) = if check.mask == Mask::Depth {
-                (65.535, "m")
-            } else {
-                (1.0, "")
+            let (max, unit) = match check.mask {
+                Mask::Depth => (65.535, "m"),
+                Mask::Water => (0.655_35, "m"),
+                Mask::Rain | Mask::Wet => (1.0, ""),
             };
             number(&format!("{at}.statistic"), level, 0.0, max, unit)?;
         }

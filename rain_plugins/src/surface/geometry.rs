@@ -9,6 +9,7 @@ use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
 use super::OriginalMaterial;
+use crate::schedule::RainViewSystems;
 
 /// Put on a mesh (or its root) that moves: it covers rain in the picture, but is no ground, and state does not depend
 /// on where it is at a frame. Meshes that are seen to move are marked by themselves.
@@ -16,9 +17,34 @@ use super::OriginalMaterial;
 #[reflect(Component, Default)]
 pub struct MovesInRain;
 
+/// Hands the meshes over: the cover's and the wet surfaces' plugin both need it.
+pub(crate) struct SceneGeometryPlugin;
+
+impl SceneGeometryPlugin {
+    /// Adds it once.
+    pub(crate) fn add_to(app: &mut App) {
+        if !app.is_plugin_added::<Self>() {
+            app.add_plugins(Self);
+        }
+    }
+}
+
+impl Plugin for SceneGeometryPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<HandedOver>()
+            .register_type::<MovesInRain>()
+            .add_systems(
+                PostUpdate,
+                hand_over
+                    .in_set(RainViewSystems::Surfaces)
+                    .run_if(resource_exists::<CoverField>.and_then(resource_exists::<SurfaceScene>)),
+            );
+    }
+}
+
 /// What has been handed over, by owner.
 #[derive(Resource, Default)]
-pub(super) struct HandedOver {
+struct HandedOver {
     owners: BTreeMap<u64, SurfaceClass>,
     /// Something was not ready: a material or mesh still being loaded.
     stale: bool,
@@ -49,7 +75,7 @@ type Surface = (
 );
 
 /// Hands meshes that stand still over to the cover and the ground of the simulation; looks at nothing in a still scene.
-pub(super) fn hand_over(
+fn hand_over(
     mut commands: Commands,
     mut handed: ResMut<HandedOver>,
     mut cover: ResMut<CoverField>,

@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
 use super::dynamic::{OwnWetness, give_own_wetness};
-use super::geometry::{HandedOver, MovesInRain, hand_over};
+use super::geometry::SceneGeometryPlugin;
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirror};
@@ -95,6 +95,7 @@ impl Plugin for WetSurfacePlugin {
         if app.get_sub_app(RenderApp).is_none() {
             return; // a server has no materials
         }
+        SceneGeometryPlugin::add_to(app);
         app.register_type::<KeepDry>()
             .register_type::<SurfaceWetting>()
             .register_type::<PlanarReflection>()
@@ -110,8 +111,6 @@ impl Plugin for WetSurfacePlugin {
             .init_resource::<WaterLevels>()
             .init_resource::<LevelsFromGround>()
             .init_resource::<GroundFilms>()
-            .init_resource::<HandedOver>()
-            .register_type::<MovesInRain>()
             .add_systems(Startup, (create_state, create_images))
             .add_systems(
                 PostUpdate,
@@ -137,12 +136,6 @@ impl Plugin for WetSurfacePlugin {
                         .before(AssetEventSystems),
                 )
                     .run_if(resource_exists::<SurfaceState>),
-            )
-            .add_systems(
-                PostUpdate,
-                hand_over
-                    .in_set(RainViewSystems::Surfaces)
-                    .run_if(resource_exists::<CoverField>.and_then(resource_exists::<SurfaceScene>)),
             );
     }
 }

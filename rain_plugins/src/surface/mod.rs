@@ -15,7 +15,7 @@ mod water;
 
 pub use dynamic::OwnWetness;
 pub use geometry::MovesInRain;
-pub(crate) use geometry::triangles_of;
+pub(crate) use geometry::{SceneGeometryPlugin, triangles_of};
 pub use ground::{GroundFilms, LevelsFromGround};
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
 pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};

@@ -9,6 +9,7 @@ use bevy::prelude::*;
 
 use super::state::SurfaceState;
 use super::water::{WaterAppearance, WaterLevels};
+use crate::cover::AirAroundView;
 use crate::rainfall::RainView;
 use crate::render_adapter::{mirror_camera, reflection_target};
 use crate::report::{PassName, RainReport, SkipReason};
@@ -42,8 +43,9 @@ pub struct RainMirrorView;
 /// What the frame's mirror shows.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub struct MirrorFrame {
-    /// World to the mirrored view's clip space and the eye it belongs to; `None`: no mirror this frame.
-    pub view: Option<(Mat4, Vec3)>,
+    /// World to the mirrored view's clip space, the eye it belongs to and the mirror's height in m; `None`: no mirror
+    /// this frame.
+    pub view: Option<(Mat4, Vec3, f32)>,
 }
 
 /// The projection of the view that is mirrored, cut off at the mirror; the target's shape does not change it.
@@ -72,6 +74,7 @@ impl CameraProjection for MirrorProjection {
 
 #[derive(QueryData)]
 pub(super) struct Mirrored {
+    entity: Entity,
     camera: &'static Camera,
     transform: &'static GlobalTransform,
     projection: &'static Projection,
@@ -113,6 +116,7 @@ pub(super) fn aim_mirror(
     appearance: Res<WaterAppearance>,
     size: Res<ReflectionSize>,
     report: Res<RainReport>,
+    air: Option<Res<AirAroundView>>,
     views: Query<Mirrored, (With<RainView>, Without<RainMirrorView>)>,
     mut mirrors: Query<
         (
@@ -133,6 +137,8 @@ pub(super) fn aim_mirror(
         None => Some(SkipReason::NoView),
         Some(_) if appearance.reflection_strength <= 0.0 => Some(SkipReason::Disabled),
         Some(_) if !surface.wet => Some(SkipReason::Dry),
+        // Where no rain can be in sight, no ground is wet.
+        Some(v) if air.as_ref().is_some_and(|a| a.closed_in == Some(v.entity)) => Some(SkipReason::Indoors),
         Some(v) if !matches!(v.projection, Projection::Perspective(_)) => Some(SkipReason::Unsupported),
         Some(_) => None,
     };
@@ -184,7 +190,7 @@ pub(super) fn aim_mirror(
         ));
         return;
     };
-    frame.view = Some((clip_from_world, eye));
+    frame.view = Some((clip_from_world, eye, height));
     camera.is_active = true;
     *own_transform = transform;
     *global = GlobalTransform::from(transform);

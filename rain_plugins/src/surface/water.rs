@@ -170,6 +170,19 @@ impl WaterLevels {
         if level <= NO_WATER_M {
             return 0.0;
         }
+        water_depth_m(f64::from(level), self.ground_between_cells_m(x_m, z_m))
+    }
+
+    /// World height of the ground between the cells' middles, where there is any. Units: m.
+    #[must_use]
+    pub fn ground_at(&self, x_m: f64, z_m: f64) -> Option<f32> {
+        self.cell_at(x_m, z_m).filter(|_| !self.ground_m.is_empty())?;
+        let height = self.ground_between_cells_m(x_m, z_m);
+        height.is_finite().then_some((self.base_m + height) as f32)
+    }
+
+    /// Above `base_m`; of a place in the cells, with heights.
+    fn ground_between_cells_m(&self, x_m: f64, z_m: f64) -> f64 {
         let at = (DVec2::new(x_m, z_m) - self.corner_m) / self.cell_m - 0.5;
         let (corner, t) = (at.floor(), at - at.floor());
         let ground = |dx: f64, dz: f64| {
@@ -179,7 +192,7 @@ impl WaterLevels {
         };
         let near = ground(0.0, 0.0) * (1.0 - t.x) + ground(1.0, 0.0) * t.x;
         let far = ground(0.0, 1.0) * (1.0 - t.x) + ground(1.0, 1.0) * t.x;
-        water_depth_m(f64::from(level), near * (1.0 - t.y) + far * t.y)
+        near * (1.0 - t.y) + far * t.y
     }
 
     /// Level of each cell above `base_m`. Units: m.

@@ -95,7 +95,10 @@ pub(super) fn move_water(
     };
     if let Some(reason) = reason {
         report.skipped(PassName::Waves, reason);
-        waves.tile.reset();
+        // While time stands still the water does too, and goes on when it is seen again.
+        if elapsed > 0 {
+            waves.tile.reset();
+        }
         return;
     }
     let Some(view) = view else { return };

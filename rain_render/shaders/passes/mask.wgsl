@@ -1,12 +1,16 @@
-// Wetness and distance of each pixel, from the view's depth.
+// Wetness, distance and standing water of each pixel, from the view's depth.
 
 @group(0) @binding(0) var<uniform> view: MaskView;
 @group(0) @binding(1) var scene_depth: texture_depth_2d;
 @group(0) @binding(2) var cover_map: texture_depth_2d;
+@group(0) @binding(3) var film_map: texture_2d<f32>;
+@group(0) @binding(4) var film_sampler: sampler;
+@group(0) @binding(5) var level_map: texture_2d<f32>;
 
 struct Masks {
     @location(0) wet: vec4<f32>,
     @location(1) depth: vec4<f32>,
+    @location(2) water: vec4<f32>,
 }
 
 @vertex
@@ -28,6 +32,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     if (depth <= 0.0) {
         out.wet = vec4<f32>(0.0);
         out.depth = vec4<f32>(1e9, 0.0, 0.0, 0.0);
+        out.water = vec4<f32>(0.0);
         return out;
     }
     let p = from_eye(position.xy, depth);
@@ -46,7 +51,14 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
     let exposure = rain_exposure(cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal))
         * rain_catch(normal.y, dot(normal, to_rain));
-    out.wet = vec4<f32>(rain_point_wetness(view.surface.state, exposure), 0.0, 0.0, 0.0);
+    // As the wet material shows it: the weather's wetness where the rain reaches, what the ground remembers on it, and
+    // all soaked under a puddle.
+    let ground = rain_remembered(film_map, film_sampler, view.surface.levels, p);
+    let wet = mix(rain_point_wetness(view.surface.state, exposure), ground.x, rain_memory_share(ground.z, normal.y));
+    let depth_of_water = rain_standing_water(level_map, view.surface.levels, p);
+    let puddle = rain_puddle_rim(depth_of_water) * smoothstep(0.85, 0.95, normal.y);
+    out.wet = vec4<f32>(max(wet, smoothstep(0.0, 0.5, puddle)), 0.0, 0.0, 0.0);
+    out.water = vec4<f32>(select(0.0, max(depth_of_water, 0.0), puddle > 0.0), 0.0, 0.0, 0.0);
     out.depth = vec4<f32>(length(p), 0.0, 0.0, 0.0);
     return out;
 }

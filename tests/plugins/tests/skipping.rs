@@ -59,18 +59,26 @@ fn an_eye_in_a_closed_room_records_no_rain_until_a_wall_opens() {
     world::ground(test.world());
     let [wall, ..] = world::room(test.world());
     test.world().spawn(Weather::rain(50.0));
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(PlanarReflection::default());
     test.look(Vec3::new(0.0, 1.5, 1.5), Vec3::new(0.0, 1.5, -3.0));
     test.frames(10, FRAME);
     test.reset();
     test.frames(30, FRAME);
     assert_eq!(test.recorded(PassName::Rainfall), 0);
     assert_eq!(test.skipped(PassName::Rainfall, SkipReason::Indoors), 30);
+    assert_eq!(test.recorded(PassName::Reflection), 0);
+    assert_eq!(test.skipped(PassName::Reflection, SkipReason::Indoors), 30);
 
     test.world().despawn(wall);
     test.frames(5, FRAME);
     test.reset();
     test.frames(30, FRAME);
     assert_eq!(test.recorded(PassName::Rainfall), 30, "with a wall gone");
+    assert!(
+        test.recorded(PassName::Reflection) > 20,
+        "the ground before the room mirrors"
+    );
 }
 
 #[test]

@@ -54,6 +54,7 @@ fn a_step_is_found_where_it_is() {
     let step = |x: f64| Pixel {
         at: [0, 0],
         rain: 0.0,
+        water: 0.0,
         wet: ((x - 1.25) / 0.2 + 0.5).clamp(0.0, 1.0),
         surface: Some([x, 0.0, 0.0].into()),
         brightness: 0.0,

@@ -49,6 +49,7 @@ fn a_moving_slab_keeps_rain_and_wet_off_exactly_where_it_is_in_every_capture() {
         })
         .collect();
     let mut session = plan.session(Path::new("."), |world| {
+        world::without_ground(world);
         world::ground(world);
         let low = Vec3::new(-HALF as f32, 2.2, -HALF as f32);
         let high = Vec3::new(HALF as f32, 2.3, HALF as f32);

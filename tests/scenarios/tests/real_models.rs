@@ -5,7 +5,7 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use rain_plugins::scenario::file::{PathKey, ScenePart, Vehicle};
 use test_support::shots::{Plan, View, mean, raining, steady};
-use test_support::{assets, gpu};
+use test_support::{assets, gpu, world};
 
 /// Bounds of everything under `root`. Units: m.
 fn bounds(world: &mut World, root: Entity) -> (DVec3, DVec3) {
@@ -67,7 +67,7 @@ fn real_roads_get_wet_but_not_under_a_real_truck_while_it_drives() {
         fov_y_deg: 50.0,
         cut: false,
     }];
-    let mut session = plan.session(&folder, |_| {});
+    let mut session = plan.session(&folder, world::without_ground);
     for i in 0..2 {
         let shot = plan.shot(&mut session, i);
         let world = session.app().world_mut();

@@ -56,6 +56,7 @@ fn the_ground_is_dry_under_a_roof_and_wet_beside_it_with_a_soft_border() {
     let views = [View::new([edge, 3.4, 0.0], [edge, 0.0, 0.0])];
     let plan = Plan::new(steady(25.0, [0.0; 3]), SOAKED_S, &views);
     let mut session = plan.session(Path::new("."), |world| {
+        world::without_ground(world);
         world::ground(world);
         world::roof(world);
     });
@@ -104,6 +105,7 @@ fn wind_moves_the_dry_patch_by_height_times_wind_over_fall_speed() {
         let views = [over(mean_at[0] + 0.5, 3.4), over(mean_at[1] + 0.5, lee)];
         let plan = Plan::new(steady(25.0, [wind, 0.0, 0.0]), SOAKED_S, &views);
         let mut session = plan.session(Path::new("."), |world| {
+            world::without_ground(world);
             world::ground(world);
             world::roof(world);
         });
@@ -143,6 +145,7 @@ fn a_wall_in_the_lee_stays_drier_than_the_windward_wall() {
     ];
     let plan = Plan::new(steady(25.0, [8.0, 0.0, 0.0]), SOAKED_S, &views);
     let mut session = plan.session(Path::new("."), |world| {
+        world::without_ground(world);
         world::ground(world);
         let (low, high) = ([-1.0, 0.0, -4.0].into(), [1.0, 3.0, 4.0].into());
         world::block(world, "house", low, high, world::STONE);

@@ -5,7 +5,7 @@ use rain_plugins::scenario::Session;
 use rain_plugins::scenario::file::{Attached, PathKey, ScenePart, Vehicle};
 use street::layout::{ARCADE_CEILING_Y, ARCADE_DEPTH, ARCADE_Z, CAR_START, FACADE_X, SHELTER_X, SHELTER_Y, SHELTER_Z};
 use test_support::shots::{Pixel, Plan, View, mean, raining, steady};
-use test_support::{assets, gpu};
+use test_support::{assets, gpu, world};
 
 use crate::border::{COVER_TEXEL_M, MEDIAN_INVERSE_SPEED_25_MM_H, crossings, profile};
 
@@ -18,6 +18,11 @@ fn plan(wind_m_s: [f64; 3], start_s: f64, views: &[View]) -> Plan {
 
 fn session(plan: &Plan) -> Session {
     plan.session(assets::street_folder().0, |_| {})
+}
+
+/// Wet where the rain reaches at the moment, without the ground's memory.
+fn session_of_the_moment(plan: &Plan) -> Session {
+    plan.session(assets::street_folder().0, world::without_ground)
 }
 
 fn recorded(session: &Session) -> u64 {
@@ -124,7 +129,7 @@ fn wind_drives_rain_under_the_bus_shelter_by_height_times_wind_over_fall_speed()
     for wind in [0.0, -1.2] {
         let view = View::new([-4.9, 2.4, -10.0], [-4.9, 0.0, -10.0]).fov(80.0);
         let plan = plan([wind, 0.0, 0.0], 180.0, &[view]);
-        let mut session = session(&plan);
+        let mut session = session_of_the_moment(&plan);
         let shot = plan.shot(&mut session, 0);
         // The pavement, away from the posts and the roof's ends.
         let pavement = shot.where_surface(|p| {
@@ -210,7 +215,7 @@ fn no_streak_and_no_wet_under_the_driving_car_in_any_capture_and_both_beside_it(
         target_offset: target,
         fov_y_deg: 70.0,
     });
-    let mut session = session(&plan);
+    let mut session = session_of_the_moment(&plan);
     let layout = assets::street_folder().1;
     for i in 0..3 {
         let mut shot = plan.shot(&mut session, i);

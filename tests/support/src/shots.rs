@@ -86,7 +86,7 @@ impl Plan {
             },
             outputs: Outputs {
                 size: [160, 90],
-                masks: vec![Mask::Rain, Mask::Wet, Mask::Depth],
+                masks: vec![Mask::Rain, Mask::Wet, Mask::Depth, Mask::Water],
                 ..Outputs::default()
             },
             ..Scenario::default()
@@ -161,6 +161,8 @@ pub struct Pixel {
     pub rain: f64,
     /// Pore saturation, [0, 1].
     pub wet: f64,
+    /// Depth of standing water. Units: m.
+    pub water: f64,
     /// The surface that it shows; `None` for the sky and beyond 65 m.
     pub surface: Option<DVec3>,
     /// Mean of the three 8-bit channels.
@@ -198,6 +200,7 @@ impl Shot {
                     at: [x, y],
                     rain: f64::from(texel(Mask::Rain, i)) / 65_535.0,
                     wet: f64::from(texel(Mask::Wet, i)) / 65_535.0,
+                    water: f64::from(texel(Mask::Water, i)) * 1e-5,
                     surface: (depth < u16::MAX).then(|| self.view.eye + ray * (f64::from(depth) * 1e-3)),
                     brightness: (r + g + b) / 3.0,
                 });

@@ -1,6 +1,7 @@
 //! Small worlds of boxes, put together by hand so that a test knows every edge.
 
 use bevy::prelude::*;
+use rain_plugins::prelude::SurfaceSettings;
 
 /// Colour of [`block`]s: linear reflectance of a mid-grey stone.
 pub const STONE: [f32; 3] = [0.35, 0.35, 0.35];
@@ -40,6 +41,15 @@ pub fn ground(world: &mut World) -> Entity {
         Vec3::new(40.0, 0.0, 40.0),
         STONE,
     )
+}
+
+/// No ground in the simulation: pictures and masks go by the weather and by what covers at the moment, as they do on
+/// roofs, walls and whatever else lies above the ground.
+///
+/// # Panics
+/// Without the rain plugins.
+pub fn without_ground(world: &mut World) {
+    world.resource_mut::<SurfaceSettings>().enabled = false;
 }
 
 /// Half the side of the [`roof`]. Units: m.

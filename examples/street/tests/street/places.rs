@@ -4,8 +4,8 @@ use crate::scene::{first_hit, street_scene};
 use glam::Vec3;
 use std::collections::BinaryHeap;
 use street::layout::{
-    ARCADE_CEILING_Y, ARCADE_COLUMN, ARCADE_DEPTH, ARCADE_FLOOR_Y, ARCADE_Z, FACADE_X, KERB_HEIGHT, ROAD_HALF_WIDTH,
-    ROOM_MAX, ROOM_MIN, SHELTER_X, SHELTER_Y, SHELTER_Z,
+    ARCADE_CEILING_Y, ARCADE_COLUMN, ARCADE_DEPTH, ARCADE_FLOOR_Y, ARCADE_Z, FACADE_X, KERB_HEIGHT, KERB_WIDTH,
+    ROAD_HALF_WIDTH, ROOM_MAX, ROOM_MIN, SHELTER_X, SHELTER_Y, SHELTER_Z,
 };
 
 /// Height of the mesh under (x, z), looking down from 1 m.
@@ -114,6 +114,25 @@ fn road_falls_to_the_gutters_and_kerbs_stand_above_them() {
                 at(FACADE_X - 0.05) > at(ROAD_HALF_WIDTH + 0.2),
                 "the pavement falls to the kerb"
             );
+        }
+    }
+}
+
+#[test]
+fn no_ray_slips_through_the_seam_of_kerb_and_pavement() {
+    let layout = street::layout();
+    let x = ROAD_HALF_WIDTH + KERB_WIDTH;
+    for k in 0..1500_u32 {
+        let z = -34.0 + 68.0 * street::noise::lattice(k, 0, 3);
+        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let near = street_scene().near(x * side, z, 0.3);
+        let edge = layout.ground_height((x + 1e-4) * side, z);
+        for millimetres in -3_i8..4 {
+            let seam = Vec3::new(x * side, edge + 1e-3 * f32::from(millimetres), z);
+            let eye = seam + Vec3::new(-0.2 * side, 0.05, 0.0);
+            let hit = first_hit(near.iter().copied(), eye, (seam - eye).normalize(), 1.0);
+            let distance = hit.map_or(f32::INFINITY, |(d, _)| d);
+            assert!(distance < 0.24, "at {seam}: {distance} m");
         }
     }
 }

@@ -10,7 +10,8 @@
 #import rain::surface::{
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
     rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
-    rain_painted_puddle_water, rain_crack_water, rain_puddle_noise,
+    rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_remembered, rain_memory_share,
+    rain_puddle_rim,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -56,8 +57,6 @@ const WATER_ROUGHNESS: f32 = 0.045;
 const FILM_ROUGHNESS: f32 = 0.16;
 // Reflectance of water: F0 = 0.02 = 0.16 r².
 const WATER_REFLECTANCE: f32 = 0.357;
-// Depth over which a puddle's rim turns from film into water, m.
-const SHORE_M: f32 = 0.003;
 
 // Slopes of the water's surface, and the variance of those too small to be seen singly.
 struct WaterSurface {
@@ -89,19 +88,6 @@ fn water_surface(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, depth: f32, expos
         out.variance += max(wave.z, 0.0) * inside;
     }
     return out;
-}
-
-// What the ground at `p` remembers: pore saturation, share under a film, and how far that holds for `p`: it is within
-// a step of the ground.
-fn remembered(p: vec3<f32>) -> vec3<f32> {
-    let levels = rain_surface.levels;
-    let cell = (p.xz - levels.corner) * levels.inverse_cell;
-    if (levels.films < 0.5 || any(cell < vec2<f32>(0.5)) || any(cell > levels.cells - 0.5)) {
-        return vec3<f32>(0.0);
-    }
-    let texel = textureSampleLevel(rain_film_map, rain_sampler, cell / vec2<f32>(textureDimensions(rain_film_map)), 0.0);
-    let above = abs(p.y - levels.base - texel.z);
-    return vec3<f32>(texel.y, texel.x, 1.0 - smoothstep(0.2, 0.35, above));
 }
 
 // What artists placed at a point.
@@ -182,15 +168,18 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 
     let normal = normalize(pbr.world_normal);
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
-    let exposure = wetting.take.x * placed.wettable
-        * rain_exposure(rain_cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal))
-        * rain_catch(normal.y, dot(normal, to_rain));
-    let shore = smoothstep(-0.5 * SHORE_M, SHORE_M, depth);
+    let ground = rain_remembered(rain_film_map, rain_sampler, rain_surface.levels, p);
+    let memory = rain_memory_share(ground.z, normal.y);
+    // What the ground remembers, a thing's own wetness and walls in the lee need no look at what covers now; rings do.
+    var exposure = wetting.take.x * placed.wettable * rain_catch(normal.y, dot(normal, to_rain));
+    if (exposure > 0.0 && (depth > 0.0 || (memory < 1.0 && wetting.take.z < 0.5))) {
+        exposure *= rain_exposure(rain_cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal));
+    }
+    let shore = rain_puddle_rim(depth);
     let puddle = level * wetting.take.x * max(select(shore, 0.0, depth <= placed.depth), placed.water);
     // Wetness of the pores and share under a film.
     var wet = vec2<f32>(rain_point_wetness(rain_surface.state, exposure), rain_point_film(rain_surface.state, exposure));
-    let ground = remembered(p);
-    wet = mix(wet, ground.xy * wetting.take.x * placed.wettable, ground.z * smoothstep(0.5, 0.8, normal.y));
+    wet = mix(wet, ground.xy * wetting.take.x * placed.wettable, memory);
     if (wetting.take.z > 0.5) {
         // A thing that moves carries its water with it, under cover too.
         wet = unpack2x16unorm(get_tag(in.instance_index)) * wetting.take.x * rain_catch(normal.y, dot(normal, to_rain));
@@ -247,7 +236,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 // Exposed radiance of the mirrored view that the surface at `p` shows, and how much of its mirror image that is.
 fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughness: f32, film: f32) -> vec4<f32> {
     let reflection = rain_surface.reflection;
-    let share = reflection.eye.w * film * (1.0 - smoothstep(0.3, 0.5, roughness)) * smoothstep(0.6, 0.9, normal.y);
+    // What lies far off the mirror's plane, a high pavement or a step, shows its surroundings' map instead.
+    let off = 1.0 - smoothstep(0.2, 0.6, abs(p.y - reflection.plane.x));
+    let share = reflection.eye.w * film * (1.0 - smoothstep(0.3, 0.5, roughness)) * smoothstep(0.6, 0.9, normal.y) * off;
     let own = distance(reflection.eye.xyz, view.world_position) < 0.01;
     if (share <= 0.0 || !own) {
         return vec4<f32>(0.0);
@@ -265,6 +256,12 @@ fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughne
     let lobe = 0.8 * roughness * roughness;
     let across = lobe * max(to_eye.y, 0.12);
     let level = log2(max(across * size.y, 1.0));
+    let middle = clamp(uv, vec2<f32>(0.002), vec2<f32>(0.998));
+    let shown = share * smoothstep(0.0, 0.05, edge);
+    // Still water mirrors sharply: its lobe is smaller than a texel.
+    if (lobe * size.y < 0.75) {
+        return vec4<f32>(textureSampleLevel(rain_reflection_map, rain_sampler, middle, 0.0).xyz, shown);
+    }
     var weights = array<f32, 7>(0.07, 0.13, 0.19, 0.22, 0.19, 0.13, 0.07);
     var sum = vec3<f32>(0.0);
     for (var i = 0; i < 7; i++) {
@@ -272,6 +269,6 @@ fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughne
         let inside = clamp(at, vec2<f32>(0.002), vec2<f32>(0.998));
         sum += weights[i] * textureSampleLevel(rain_reflection_map, rain_sampler, inside, level).xyz;
     }
-    return vec4<f32>(sum, share * smoothstep(0.0, 0.05, edge));
+    return vec4<f32>(sum, shown);
 }
 #endif
