@@ -119,6 +119,8 @@ struct WaterLook {
     ripples: vec4<f32>,
     // Wave tile. x, y: its corner (x, z), z: 1 / side, 1/m, w: 1 when there is one.
     waves: vec4<f32>,
+    // x, y: the eye's place in the tile of the wind's waves, in sides; z, w unused.
+    place: vec4<f32>,
 }
 
 // The mirrored view.

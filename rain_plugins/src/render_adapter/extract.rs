@@ -153,6 +153,7 @@ fn water_look(appearance: &WaterAppearance, surface: &SurfaceState) -> WaterLook
         ],
         ripples: [0.0; 4],
         waves: [0.0; 4],
+        place: [0.0; 4],
     }
 }
 

@@ -12,6 +12,7 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa};
+use rain_render::compose;
 use rain_render::cover::open_sky;
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams};
 use rain_render::masks::MaskGpu;
@@ -174,6 +175,9 @@ fn surface_params(
             eye: at.extend(surface.mirror_strength).to_array(),
         });
     let mut water = surface.water;
+    let wind_tile_m = compose::WIND_TILE / f64::from(water.ambient[1]);
+    let place = (origin.xz() / wind_tile_m).fract_gl().as_vec2();
+    water.place = [place.x, place.y, 0.0, 0.0];
     if waves.ripple_side_m > 0.0 {
         let place = (origin.xz() / waves.ripple_side_m).fract_gl().as_vec2();
         water.ripples = [(1.0 / waves.ripple_side_m) as f32, place.x, place.y, 1.0];

@@ -107,6 +107,12 @@ pub(super) fn keep_reflection(
     report.recorded(PassName::Reflection);
 }
 
+/// Draws into the part of the target that the view has; its pixels are counted from that part's corner.
+fn draw_within(pass: &mut wgpu::RenderPass, viewport: UVec4) {
+    let [x, y, width, height] = viewport.as_vec4().to_array();
+    pass.set_viewport(x, y, width, height, 0.0, 1.0);
+}
+
 /// Projects and draws a view's streaks over its colour target, and its masks where somebody asked for them.
 pub(super) fn rainfall(
     view: ViewQuery<(
@@ -149,6 +155,7 @@ pub(super) fn rainfall(
             multiview_mask: None,
         });
         let span = recorder.pass_span(&mut pass, "rain_rainfall");
+        draw_within(&mut pass, view.viewport);
         encode_draw(&mut pass, &gpu.rainfall, view_gpu, view.target_format, msaa.samples());
         span.end(&mut pass);
         drop(pass);
@@ -184,6 +191,7 @@ pub(super) fn rainfall(
         multiview_mask: None,
     });
     if let Some(view_gpu) = view_gpu {
+        draw_within(&mut pass, view.viewport);
         encode_coverage(&mut pass, &gpu.rainfall, view_gpu, msaa.samples());
     }
     drop(pass);

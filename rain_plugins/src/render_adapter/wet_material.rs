@@ -85,7 +85,16 @@ impl Plugin for WetMaterialPlugin {
         source.push_str(&compose::constants());
         source.push_str(compose::TYPES);
         for library in compose::LIBRARIES {
-            if ["hash", "cover", "wetness", "standing_water", "placed_water"].contains(&library.name) {
+            if [
+                "hash",
+                "cover",
+                "wetness",
+                "standing_water",
+                "wind_waves",
+                "placed_water",
+            ]
+            .contains(&library.name)
+            {
                 source.push_str(library.source);
             }
         }

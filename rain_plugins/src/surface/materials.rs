@@ -8,6 +8,7 @@ use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
 use super::dynamic::{OwnWetness, give_own_wetness};
+use super::gaps::{SceneGap, report_ground};
 use super::geometry::{HandedOver, MovesInRain, hand_over};
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
@@ -111,6 +112,7 @@ impl Plugin for WetSurfacePlugin {
             .init_resource::<LevelsFromGround>()
             .init_resource::<GroundFilms>()
             .init_resource::<HandedOver>()
+            .add_message::<SceneGap>()
             .register_type::<MovesInRain>()
             .add_systems(Startup, (create_state, create_images))
             .add_systems(
@@ -140,7 +142,7 @@ impl Plugin for WetSurfacePlugin {
             )
             .add_systems(
                 PostUpdate,
-                hand_over
+                (hand_over, report_ground)
                     .in_set(RainViewSystems::Surfaces)
                     .run_if(resource_exists::<CoverField>.and_then(resource_exists::<SurfaceScene>)),
             );
