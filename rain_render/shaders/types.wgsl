@@ -123,7 +123,7 @@ struct WaterLook {
     place: vec4<f32>,
 }
 
-// The mirrored view.
+// A mirrored view, in the layer of the same number.
 struct ReflectionParams {
     // Eye-relative world to the mirrored view's clip space.
     clip_from_eye: mat4x4<f32>,
@@ -142,7 +142,7 @@ struct SurfaceParams {
     cover: CoverParams,
     levels: LevelMapParams,
     water: WaterLook,
-    reflection: ReflectionParams,
+    mirrors: array<ReflectionParams, 4>,
 }
 
 struct MaskView {

@@ -71,16 +71,16 @@ pub(super) fn water(gpu: Res<RainGpu>, waves: Res<ExtractedWaves>, report: Res<R
     }
 }
 
-/// Copies the mirrored view into the texture that wet materials read.
+/// Copies a mirrored view into its layer of the texture that wet materials read.
 pub(super) fn keep_reflection(
-    view: ViewQuery<&ViewTarget, With<RainMirrorView>>,
+    view: ViewQuery<(&ViewTarget, &RainMirrorView)>,
     scene: Option<Res<ExtractedRainScene>>,
     images: Res<RenderAssets<GpuImage>>,
     gpu: Res<RainGpu>,
     report: Res<RainReport>,
     mut ctx: RenderContext,
 ) {
-    let target = view.into_inner();
+    let (target, mirror) = view.into_inner();
     let Some(surface) = scene.as_ref().and_then(|s| s.surface.as_ref()) else {
         return;
     };
@@ -90,14 +90,16 @@ pub(super) fn keep_reflection(
     let source: &wgpu::Texture = target.main_texture();
     let kept: &wgpu::Texture = &kept.texture;
     let (true, true, Some(mips)) = (
-        source.size() == kept.size(),
+        (source.width(), source.height()) == (kept.width(), kept.height()),
         source.format() == kept.format(),
-        &gpu.reflection_target,
+        gpu.reflection_layers.get(mirror.layer as usize),
     ) else {
         return;
     };
+    let mut layer = kept.as_image_copy();
+    layer.origin.z = mirror.layer;
     ctx.command_encoder()
-        .copy_texture_to_texture(source.as_image_copy(), kept.as_image_copy(), kept.size());
+        .copy_texture_to_texture(source.as_image_copy(), layer, source.size());
     let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some("rain_reflection_mips"),
         timestamp_writes: None,

@@ -113,7 +113,7 @@ pub(super) fn hand_over(
             present.remove(&owner);
             continue;
         };
-        let mut report = |gap| {
+        let mut report = |gap: Gap| {
             warn!("{entity}: {gap}");
             gaps.write(SceneGap {
                 entity: Some(entity),

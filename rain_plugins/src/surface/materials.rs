@@ -12,7 +12,7 @@ use super::gaps::{SceneGap, report_ground};
 use super::geometry::{HandedOver, MovesInRain, hand_over};
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
-use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirror};
+use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirrors};
 use super::state::{SurfaceState, create_state, follow_weather};
 use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::CoverMap;
@@ -120,7 +120,7 @@ impl Plugin for WetSurfacePlugin {
                 (
                     give_own_wetness,
                     check_appearance.run_if(resource_changed::<WaterAppearance>),
-                    (follow_weather, follow_ground, follow_films, aim_mirror)
+                    (follow_weather, follow_ground, follow_films, aim_mirrors)
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
@@ -156,13 +156,14 @@ fn check_appearance(appearance: Res<WaterAppearance>) {
     }
 }
 
-fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, mirror: Res<ReflectionSize>) {
+fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
     commands.insert_resource(WaterImages {
         levels: images.add(level_image(LEVEL_TEXELS)),
         films: images.add(film_image(LEVEL_TEXELS)),
         ripples: images.add(slope_image(256)),
         waves: images.add(slope_image(256)),
-        reflection: images.add(reflection_image(mirror.0)),
+        // Of no size before a view asks for a mirror.
+        reflection: images.add(reflection_image(UVec2::ONE, 1)),
     });
 }
 

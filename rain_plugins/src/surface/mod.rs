@@ -21,7 +21,7 @@ pub use geometry::MovesInRain;
 pub use ground::{GroundFilms, LevelsFromGround};
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
 pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
-pub use reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize};
+pub use reflection::{MirrorFrame, MirrorView, PlanarReflection, RainMirrorView, ReflectionSize};
 pub use state::{SurfaceState, WAVE_PERIOD_S};
 pub(crate) use triangles::{MeshTriangles, triangles_of};
 pub use water::{LEVEL_TEXELS, NO_WATER_M, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};

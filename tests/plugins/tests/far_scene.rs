@@ -113,9 +113,10 @@ fn scenes_of_a_hundredth_and_a_hundred_times_the_size_rain_and_hold_water() {
     }
     for scale in [0.01_f32, 100.0] {
         let mut test = TestApp::new([64, 32], true);
-        let mut settings = SurfaceSettings::default();
-        settings.cell_m *= f64::from(scale).min(1.0).max(0.04);
-        test.world().insert_resource(settings);
+        test.world().insert_resource(SurfaceSettings {
+            cell_m: 0.25 * f64::from(scale).clamp(0.04, 1.0),
+            ..default()
+        });
         let ground = terrain([48, 48], 0.25, |x, z| Some(hollow(x, z)));
         place(test.world(), ground, Transform::from_scale(Vec3::splat(scale)));
         let weather = test.world().spawn(Weather::rain(0.0)).id();

@@ -6,6 +6,7 @@ mod far_scene;
 mod groups;
 mod large_scene;
 mod materials;
+mod mirrors;
 mod placed_puddles;
 mod puddles;
 mod rewind;

@@ -47,7 +47,7 @@ fn a_restored_scene_looks_as_it_did_and_no_later_water_stays() {
     let deep = depth(&mut test, 0.0, 0.0);
     assert!(shallow > 0.002 && deep > 1.3 * shallow, "{shallow}, {deep}");
     let changed = difference(&before, &later);
-    assert!(changed.mean > 1.0, "{changed:?}");
+    assert!(changed.mean > 0.4 && changed.share > 0.02, "{changed:?}");
 
     saved.restore(test.world()).expect("fits");
     let after = test.picture();
@@ -61,7 +61,7 @@ fn a_restored_scene_looks_as_it_did_and_no_later_water_stays() {
         "no waves of later"
     );
     let found = difference(&before, &after);
-    assert!(found.mean < 0.02 && found.share == 0.0, "{found:?}, later {changed:?}");
+    assert!(found.mean < 0.02 * changed.mean && found.share == 0.0, "{found:?}, later {changed:?}");
 
     // It goes on from there as it did.
     test.frames(4, FRAME);

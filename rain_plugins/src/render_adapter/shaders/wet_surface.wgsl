@@ -47,7 +47,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var rain_ripple_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(105) var rain_sampler: sampler;
 @group(#{MATERIAL_BIND_GROUP}) @binding(106) var rain_wave_map: texture_2d<f32>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(109) var rain_film_map: texture_2d<f32>;
 
@@ -273,12 +273,22 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 }
 
 #ifndef PREPASS_PIPELINE
-// Exposed radiance of the mirrored view that the surface at `p` shows, and how much of its mirror image that is.
+// Exposed radiance of this view's mirror image that the surface at `p` shows, and how much of its mirror image that is.
 fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughness: f32, film: f32) -> vec4<f32> {
-    let reflection = rain_surface.reflection;
+    // The mirror of this view's eye.
+    var layer = 0;
+    for (; layer < 4; layer++) {
+        let eye = rain_surface.mirrors[layer].eye;
+        if (eye.w > 0.0 && distance(eye.xyz, view.world_position) < 0.01) {
+            break;
+        }
+    }
+    if (layer == 4) {
+        return vec4<f32>(0.0);
+    }
+    let reflection = rain_surface.mirrors[layer];
     let share = reflection.eye.w * film * (1.0 - smoothstep(0.3, 0.5, roughness)) * smoothstep(0.6, 0.9, normal.y);
-    let own = distance(reflection.eye.xyz, view.world_position) < 0.01;
-    if (share <= 0.0 || !own) {
+    if (share <= 0.0) {
         return vec4<f32>(0.0);
     }
     // The mirror's plane is one height; what is reflected is taken to be as far away as a house across the road.
@@ -299,7 +309,7 @@ fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughne
     for (var i = 0; i < 7; i++) {
         let at = uv + vec2<f32>(0.0, lobe * (f32(i) - 3.0) / 3.0);
         let inside = clamp(at, vec2<f32>(0.002), vec2<f32>(0.998));
-        sum += weights[i] * textureSampleLevel(rain_reflection_map, rain_sampler, inside, level).xyz;
+        sum += weights[i] * textureSampleLevel(rain_reflection_map, rain_sampler, inside, layer, level).xyz;
     }
     return vec4<f32>(sum, share * smoothstep(0.0, 0.05, edge));
 }
