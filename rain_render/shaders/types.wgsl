@@ -119,9 +119,11 @@ struct WaterLook {
     ripples: vec4<f32>,
     // Wave tile. x, y: its corner (x, z), z: 1 / side, 1/m, w: 1 when there is one.
     waves: vec4<f32>,
+    // x, y: the eye's place in the tile of the wind's waves, in sides; z, w unused.
+    place: vec4<f32>,
 }
 
-// The mirrored view.
+// A mirrored view, in the layer of the same number.
 struct ReflectionParams {
     // Eye-relative world to the mirrored view's clip space.
     clip_from_eye: mat4x4<f32>,
@@ -142,7 +144,7 @@ struct SurfaceParams {
     cover: CoverParams,
     levels: LevelMapParams,
     water: WaterLook,
-    reflection: ReflectionParams,
+    mirrors: array<ReflectionParams, 4>,
 }
 
 struct MaskView {

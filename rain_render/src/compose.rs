@@ -32,6 +32,7 @@ pub const LIBRARIES: &[Library] = library![
     "wetness",
     "standing_water",
     "ground_memory",
+    "wind_waves",
     "placed_water",
     "slopes",
     "waves"
@@ -69,6 +70,15 @@ pub const BUILDING_HEIGHT_M: f64 = 5.0;
 /// What lies deeper than this under a puddle's level is another floor, not its bottom. Units: m.
 pub const DEEPEST_PUDDLE_M: f64 = 0.6;
 
+/// Side of the tile that the wind's waves repeat in. Units: lengths of the longest wave.
+pub const WIND_TILE: f64 = 256.0;
+
+/// Directions in a full turn that trains of the wind's waves may have.
+pub const WIND_DIRECTIONS: f64 = 24.0;
+
+/// After this time the wind's waves repeat. Units: s, a whole number.
+pub const WAVE_PERIOD_S: f64 = 4096.0;
+
 /// Constants that shaders share with `rain_core`.
 #[must_use]
 pub fn constants() -> String {
@@ -78,6 +88,9 @@ pub fn constants() -> String {
         ("RAIN_FADE_END", FADE_END),
         ("RAIN_BUILDING_HEIGHT_M", BUILDING_HEIGHT_M),
         ("RAIN_DEEPEST_PUDDLE_M", DEEPEST_PUDDLE_M),
+        ("RAIN_WIND_TILE", WIND_TILE),
+        ("RAIN_WIND_DIRECTIONS", WIND_DIRECTIONS),
+        ("RAIN_WAVE_PERIOD_S", WAVE_PERIOD_S),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }

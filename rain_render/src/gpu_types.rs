@@ -7,6 +7,8 @@
 use bytemuck::{Pod, Zeroable};
 use rain_core::rainfall::CLASS_COUNT;
 
+use crate::reflection::MAX_MIRRORS;
+
 /// The depth map along the rain.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -90,9 +92,10 @@ pub struct WaterLook {
     pub ambient: [f32; 4],
     pub ripples: [f32; 4],
     pub waves: [f32; 4],
+    pub place: [f32; 4],
 }
 
-/// The mirrored view.
+/// A mirrored view.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
 pub struct ReflectionParams {
@@ -111,7 +114,7 @@ pub struct SurfaceParams {
     pub cover: CoverParams,
     pub levels: LevelMapParams,
     pub water: WaterLook,
-    pub reflection: ReflectionParams,
+    pub mirrors: [ReflectionParams; MAX_MIRRORS],
 }
 
 /// The mask pass's view.
@@ -188,9 +191,9 @@ pub fn layouts() -> Vec<Layout> {
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
-        layout!(WaterLook: absorption, mud, ambient, ripples, waves),
+        layout!(WaterLook: absorption, mud, ambient, ripples, waves, place),
         layout!(ReflectionParams: clip_from_eye, eye, plane),
-        layout!(SurfaceParams: eye, state, artist, cover, levels, water, reflection),
+        layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors),
         layout!(MaskView: eye_from_clip, screen, surface),
         layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant_squared, g, keep, inverse_keep,
             blend, per_cell, rim, rim_damping),

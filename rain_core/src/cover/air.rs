@@ -19,6 +19,10 @@ pub const AIR_CELL_M: f64 = 0.25;
 /// Cells per edge of a block that is rasterised at once.
 const BLOCK: i32 = 16;
 
+/// A triangle whose box holds more blocks than this (some 250 m of level ground) is not put into the index: it is asked
+/// for in each block that a flood meets.
+const WIDE_BLOCKS: i64 = 4096;
+
 /// Largest number of cells flooded; beyond it the air counts as open.
 const MAX_CELLS: usize = 400_000;
 
@@ -28,6 +32,8 @@ pub struct AirGrid {
     triangles: BTreeMap<u64, Vec<[DVec3; 3]>>,
     /// Which triangles touch a block.
     index: BTreeMap<[i32; 3], Vec<(u64, u32)>>,
+    /// Triangles too wide for the index.
+    wide: Vec<(u64, u32)>,
     /// Blocks rasterised so far: a bit a cell.
     blocks: BTreeMap<[i32; 3], Vec<u64>>,
     /// Cells of the last flood in the order they were found, and the same to be asked for. Kept for their room.
@@ -53,7 +59,12 @@ impl AirGrid {
             .filter(|t| t.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e8))
             .collect();
         for (i, triangle) in triangles.iter().enumerate() {
-            for block in blocks_of(triangle) {
+            let Some(blocks) = blocks_of(triangle) else {
+                self.wide.push((owner, i as u32));
+                self.blocks.clear();
+                continue;
+            };
+            for block in blocks {
                 self.index.entry(block).or_default().push((owner, i as u32));
                 self.blocks.remove(&block);
             }
@@ -66,7 +77,12 @@ impl AirGrid {
         let Some(triangles) = self.triangles.remove(&owner) else {
             return;
         };
-        for block in triangles.iter().flat_map(blocks_of) {
+        let wide = self.wide.len();
+        self.wide.retain(|(o, _)| *o != owner);
+        if self.wide.len() < wide {
+            self.blocks.clear();
+        }
+        for block in triangles.iter().filter_map(blocks_of).flatten() {
             if let Some(list) = self.index.get_mut(&block) {
                 list.retain(|(o, _)| *o != owner);
             }
@@ -126,7 +142,7 @@ impl AirGrid {
         let block = cell.map_div(BLOCK);
         let inside = cell - IVec3::from_array(block) * BLOCK;
         let bit = ((inside.z * BLOCK + inside.y) * BLOCK + inside.x) as usize;
-        if !self.index.contains_key(&block) {
+        if !self.index.contains_key(&block) && self.wide.is_empty() {
             return false;
         }
         if !self.blocks.contains_key(&block) {
@@ -139,8 +155,12 @@ impl AirGrid {
     fn rasterise(&self, block: [i32; 3]) -> Vec<u64> {
         let mut bits = vec![0; (BLOCK * BLOCK * BLOCK) as usize / 64];
         let origin = IVec3::from_array(block) * BLOCK;
-        for (owner, i) in &self.index[&block] {
+        let indexed = self.index.get(&block).into_iter().flatten();
+        for (owner, i) in indexed.chain(&self.wide) {
             let triangle = self.triangles[owner][*i as usize];
+            if !touches_block(&triangle, block) {
+                continue;
+            }
             // Relative to the block: single precision is enough.
             let local = triangle.map(|p| (p / AIR_CELL_M - origin.as_dvec3()).as_vec3());
             let low = local[0].min(local[1]).min(local[2]).floor().as_ivec3().max(IVec3::ZERO);
@@ -183,24 +203,32 @@ impl MapDiv for IVec3 {
     }
 }
 
-fn blocks_of(triangle: &[DVec3; 3]) -> Vec<[i32; 3]> {
+/// Blocks that a triangle touches; none when its box holds more than [`WIDE_BLOCKS`].
+fn blocks_of(triangle: &[DVec3; 3]) -> Option<Vec<[i32; 3]>> {
     let low = cell_of(triangle[0].min(triangle[1]).min(triangle[2])).map_div(BLOCK);
     let high = cell_of(triangle[0].max(triangle[1]).max(triangle[2])).map_div(BLOCK);
+    let along = |axis: usize| i64::from(high[axis]) - i64::from(low[axis]) + 1;
+    if along(0).saturating_mul(along(1)).saturating_mul(along(2)) > WIDE_BLOCKS {
+        return None;
+    }
     let mut out = Vec::new();
-    let edge = BLOCK as f32;
     for z in low[2]..=high[2] {
         for y in low[1]..=high[1] {
             for x in low[0]..=high[0] {
                 // Large slanted triangles touch few of the blocks of their box.
-                let centre = IVec3::new(x, y, z).as_dvec3() + 0.5;
-                let local = triangle.map(|p| (p / (AIR_CELL_M * f64::from(edge)) - centre).as_vec3() + 0.5);
-                if touches(&local, Vec3::splat(0.5)) {
+                if touches_block(triangle, [x, y, z]) {
                     out.push([x, y, z]);
                 }
             }
         }
     }
-    out
+    Some(out)
+}
+
+fn touches_block(triangle: &[DVec3; 3], block: [i32; 3]) -> bool {
+    let centre = IVec3::from_array(block).as_dvec3() + 0.5;
+    let local = triangle.map(|p| (p / (AIR_CELL_M * f64::from(BLOCK)) - centre).as_vec3() + 0.5);
+    touches(&local, Vec3::splat(0.5))
 }
 
 /// Whether a triangle touches the unit cube around `centre`: separating axes (Akenine-Möller 2001).
@@ -294,6 +322,25 @@ mod tests {
             grid.flood(centre, 20.0, |p| (p - centre).length() > 8.0),
             Air::ClosedIn(_)
         ));
+    }
+
+    #[test]
+    fn a_ground_of_kilometres_closes_air_like_a_small_one() {
+        // A room without a floor of its own, on ground that reaches to the horizon.
+        let walls: Vec<_> = room(DVec3::ZERO, false).into_iter().skip(2).collect();
+        let far = 8_000.0;
+        let ground = quad([-far, 0., -far], [far, 0., -far], [far, 0., far], [-far, 0., far]);
+        let eye = DVec3::new(2.0, 1.6, 2.0);
+        let mut grid = AirGrid::default();
+        grid.set(1, walls);
+        assert_eq!(grid.flood(eye, 15.0, outside(DVec3::ZERO)), Air::Open, "no floor");
+        grid.set(2, ground);
+        let Air::ClosedIn(cells) = grid.flood(eye, 15.0, outside(DVec3::ZERO)) else {
+            panic!("the ground is no floor");
+        };
+        assert!(cells.len() > 2500 && cells.len() < 3900, "{}", cells.len());
+        grid.remove(2);
+        assert_eq!(grid.flood(eye, 15.0, outside(DVec3::ZERO)), Air::Open, "taken away");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Closed-in views: a camera in a room without openings draws no rain at all.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::*;
@@ -8,8 +8,8 @@ use rain_core::cover::air::{Air, AirGrid, cell_of};
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
 use rain_ecs::prelude::*;
 
-use crate::rainfall::RainView;
-use crate::surface::{OriginalMaterial, triangles_of};
+use crate::rainfall::{RainView, leading_view};
+use crate::surface::{MeshTriangles, OriginalMaterial, triangles_of};
 
 /// Whether the first active [`RainView`] stands in closed-in air; other views are not judged and draw.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub struct AirAroundView {
 #[derive(Resource, Default)]
 pub(super) struct Surroundings {
     air: AirGrid,
-    owners: BTreeSet<u64>,
+    owners: BTreeMap<u64, AssetId<Mesh>>,
     /// Entities not yet taken in, or moved.
     stale: bool,
     /// The last flood that found no rain, and the cell it started from.
@@ -35,6 +35,8 @@ pub(super) struct Surroundings {
     moving: BTreeSet<u64>,
     /// Version of the cover that the last flood asked.
     cover_version: Option<u64>,
+    /// Meshes whose data has changed since they were last looked at.
+    modified: BTreeSet<AssetId<Mesh>>,
 }
 
 type ChangedSurface = (
@@ -48,7 +50,7 @@ const SAME_PLACE: i32 = 8;
 type Surface = (
     Entity,
     Ref<'static, GlobalTransform>,
-    Ref<'static, Mesh3d>,
+    &'static Mesh3d,
     &'static InheritedVisibility,
     OriginalMaterial,
 );
@@ -60,25 +62,32 @@ pub(super) fn judge_air(
     cover: Option<Res<CoverField>>,
     meshes: Res<Assets<Mesh>>,
     materials: Res<Assets<StandardMaterial>>,
-    views: Query<(Entity, &GlobalTransform, &Camera), With<RainView>>,
+    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
     surfaces: Query<Surface>,
     changed: Query<(), ChangedSurface>,
     mut removed: RemovedComponents<Mesh3d>,
+    mut events: MessageReader<AssetEvent<Mesh>>,
 ) {
     let gone = removed.read().count() > 0;
     judged.closed_in = None;
+    surroundings
+        .modified
+        .extend(events.read().filter_map(|event| match event {
+            AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        }));
     let Some(cover) = cover.filter(|_| field.is_raining()) else {
         surroundings.stale = true;
         return;
     };
-    let Some((view, at, _)) = views.iter().find(|(_, _, c)| c.is_active) else {
-        return;
-    };
+    let lead = leading_view(views.iter().map(|(view, camera, at)| (view, camera, (view, at))));
+    let Some((view, at)) = lead else { return };
     let eye = at.translation().as_dvec3();
     let s = &mut *surroundings;
     // In a still scene no mesh is looked at twice.
-    if s.stale || gone || !s.moving.is_empty() || !changed.is_empty() {
+    if s.stale || gone || !s.modified.is_empty() || !s.moving.is_empty() || !changed.is_empty() {
         take_in(s, &meshes, &materials, &surfaces);
+        s.modified.clear();
     }
     if s.cover_version.replace(cover.version()) != Some(cover.version()) {
         s.flooded = None;
@@ -134,9 +143,11 @@ fn take_in(
             continue;
         }
         present.insert(owner);
-        let known = s.owners.contains(&owner);
+        let held = s.owners.get(&owner).copied();
+        let known = held.is_some();
         let seen = known || s.moving.contains(&owner);
-        if seen && (transform.is_changed() || mesh.is_changed()) {
+        let other = held.is_some_and(|id| id != mesh.0.id()) || s.modified.contains(&mesh.0.id());
+        if seen && (transform.is_changed() || other) {
             s.moving.insert(owner);
             if known {
                 s.air.remove(owner);
@@ -146,17 +157,18 @@ fn take_in(
             continue;
         }
         if s.moving.remove(&owner) || !known {
-            let Some(triangles) = meshes.get(&mesh.0).and_then(|m| triangles_of(m, &transform)) else {
+            let known_triangles = meshes.get(&mesh.0).and_then(|m| triangles_of(m, &transform).ok());
+            let Some(MeshTriangles { triangles, .. }) = known_triangles else {
                 // No data on the CPU: it cannot close here, so the air counts as open.
                 present.remove(&owner);
                 continue;
             };
             s.air.set(owner, triangles);
-            s.owners.insert(owner);
+            s.owners.insert(owner, mesh.0.id());
             changed = true;
         }
     }
-    let gone: Vec<u64> = s.owners.difference(&present).copied().collect();
+    let gone: Vec<u64> = s.owners.keys().filter(|o| !present.contains(o)).copied().collect();
     for owner in gone {
         s.air.remove(owner);
         s.owners.remove(&owner);

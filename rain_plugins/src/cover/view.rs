@@ -3,8 +3,9 @@
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers};
+use bevy::ecs::query::QueryData;
 use bevy::light::cluster::Clusters;
-use bevy::math::DVec2;
+use bevy::math::{DVec2, DVec3, Vec3Swizzles as _};
 use bevy::prelude::*;
 use rain_core::cover::{FallSlope, ShearedOrthographic, ShearedOrthographicSettings};
 use rain_ecs::prelude::*;
@@ -14,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::air::{AirAroundView, Surroundings, judge_air};
 use super::projection::ShearedProjection;
-use crate::rainfall::RainView;
+use crate::rainfall::{RainView, leading_view};
 use crate::render_adapter::{RenderApp, cover_camera, cover_image};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -166,7 +167,7 @@ fn map_is_wanted(field: Res<RainfallField>, surface: Option<Res<SurfaceState>>) 
 fn watch_occluders(
     mut watch: ResMut<OccluderWatch>,
     settings: Res<CoverSettings>,
-    views: Query<&GlobalTransform, With<RainView>>,
+    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
     occluders: Query<Occluder>,
     mut removed: RemovedComponents<Mesh3d>,
     mut meshes: MessageReader<AssetEvent<Mesh>>,
@@ -179,7 +180,7 @@ fn watch_occluders(
         | images.read().any(|e| matches!(e, AssetEvent::LoadedWithDependencies { .. }));
     let gone = removed.read().count() > 0;
     watch.changed |= asset_changed | gone;
-    let Some(eye) = views.iter().next().map(GlobalTransform::translation) else {
+    let Some(eye) = leading_view(&views).map(GlobalTransform::translation) else {
         return;
     };
     let reach = settings.extent_m;
@@ -211,6 +212,41 @@ fn watch_occluders(
     (watch.top, watch.bottom) = (top, bottom);
 }
 
+#[derive(QueryData)]
+struct SeenFrom {
+    at: &'static GlobalTransform,
+    layers: Option<&'static RenderLayers>,
+}
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct CoverCamera {
+    entity: Entity,
+    transform: &'static mut Transform,
+    global: &'static mut GlobalTransform,
+    camera: &'static mut Camera,
+    projection: &'static mut Projection,
+    layers: Option<&'static RenderLayers>,
+}
+
+/// The place around which the map is drawn: amid all eyes if none is farther than `reach` from there, else that of the
+/// leading one; the others then see open sky beyond the map.
+fn centre_of(lead: DVec3, eyes: impl IntoIterator<Item = DVec3>, reach: f64) -> DVec3 {
+    let (low, high) = eyes
+        .into_iter()
+        .filter(|eye| eye.is_finite())
+        .fold((lead, lead), |(low, high), eye| (low.min(eye), high.max(eye)));
+    let apart = (high - low).xz().max_element();
+    if apart <= 2.0 * reach {
+        (0.5 * (low + high)).with_y(lead.y)
+    } else {
+        warn_once!(
+            "views lie {apart:.0} m apart: rain passes through roofs around those that the cover map does not reach"
+        );
+        lead
+    }
+}
+
 /// Points the cover camera and decides whether this frame draws it.
 fn aim_view(
     mut map: ResMut<CoverMap>,
@@ -219,18 +255,44 @@ fn aim_view(
     report: Res<RainReport>,
     field: Res<RainfallField>,
     surface: Option<Res<SurfaceState>>,
-    views: Query<(&GlobalTransform, &Camera), (With<RainView>, Without<RainCoverView>)>,
-    mut cover: Query<(&mut Transform, &mut GlobalTransform, &mut Camera, &mut Projection), With<RainCoverView>>,
+    mut commands: Commands,
+    views: Query<(Entity, &Camera, SeenFrom), (With<RainView>, Without<RainCoverView>)>,
+    mut cover: Query<CoverCamera, With<RainCoverView>>,
 ) {
     map.redraw = false;
-    let Ok((mut transform, mut global, mut camera, mut projection)) = cover.single_mut() else {
+    let Ok(CoverCameraItem {
+        entity,
+        mut transform,
+        mut global,
+        mut camera,
+        mut projection,
+        layers,
+    }) = cover.single_mut()
+    else {
         return;
     };
     camera.is_active = false;
-    let view = views
-        .iter()
-        .find(|(_, c)| c.is_active)
-        .map(|(t, _)| t.translation().as_dvec3());
+    let lead = leading_view(&views);
+    // What the leading view sees is what covers.
+    let seen = lead.as_ref().and_then(|l| l.layers);
+    if lead.is_some() && layers != seen {
+        watch.changed = true;
+        match seen {
+            Some(seen) => commands.entity(entity).insert(seen.clone()),
+            None => commands.entity(entity).remove::<RenderLayers>(),
+        };
+    }
+    let margin = f64::from(settings.margin_m.clamp(0.0, 0.45 * settings.extent_m));
+    let extent = f64::from(settings.extent_m.clamp(10.0, 400.0));
+    let active = views.iter().filter(|(_, camera, _)| camera.is_active);
+    let view = lead.map(|l| {
+        let own = l.at.translation().as_dvec3();
+        centre_of(
+            own,
+            active.map(|(_, _, v)| v.at.translation().as_dvec3()),
+            0.5 * extent - margin,
+        )
+    });
     let wet = surface.is_some_and(|s| s.wet);
     let reason = match view {
         _ if !settings.enabled => Some(SkipReason::Disabled),
@@ -250,8 +312,6 @@ fn aim_view(
         report.skipped(PassName::Cover, SkipReason::Disabled);
         return;
     };
-    let extent = f64::from(settings.extent_m.clamp(10.0, 400.0));
-    let margin = f64::from(settings.margin_m.clamp(0.0, 0.45 * settings.extent_m));
     let kept = map.drawn.as_ref().is_some_and(|(drawn, along)| {
         drawn.holds(eye, 0.5 * extent - margin)
             && along.angle_to(&slope) <= DIRECTION_TOLERANCE
@@ -304,4 +364,22 @@ fn aim_view(
         texels: map.texels,
     });
     map.drawn = Some((drawn, slope));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_map_lies_amid_views_that_it_can_hold() {
+        let eye = |x: f64, z: f64| DVec3::new(x, 1.7, z);
+        let lead = eye(0.0, 0.0);
+        assert_eq!(centre_of(lead, [lead], 24.0), lead);
+        assert_eq!(
+            centre_of(lead, [lead, DVec3::new(20.0, 9.0, -8.0)], 24.0),
+            eye(10.0, -4.0)
+        );
+        assert_eq!(centre_of(lead, [lead, eye(0.0, 49.0)], 24.0), lead);
+        assert_eq!(centre_of(lead, [lead, DVec3::NAN], 24.0), lead);
+    }
 }

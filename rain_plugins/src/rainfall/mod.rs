@@ -1,8 +1,10 @@
 //! Near rain for each marked camera: the container that follows the view.
 
+mod lead;
 mod motion;
 mod view;
 
+pub(crate) use lead::leading_view;
 pub use motion::ViewMotion;
 pub(crate) use view::SoftwareAdapter;
 pub use view::{MAX_CONTRAST, MAX_STREAK_BUDGET, RainView, RainViewFrame, RainfallPlugin};

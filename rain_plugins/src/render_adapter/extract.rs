@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use bevy::asset::AssetId;
 use bevy::image::Image;
 use bevy::light::{DirectionalLight, EnvironmentMapLight, GlobalAmbientLight};
-use bevy::math::{DVec2, Mat4, Vec3, Vec4};
+use bevy::math::{DVec2, Vec3, Vec4};
 use bevy::prelude::*;
 use bevy::render::storage::ShaderBuffer;
 use bevy::render::sync_world::RenderEntity;
@@ -71,7 +71,7 @@ pub(super) struct ExtractedSurface {
     pub images: Option<ExtractedWaterImages>,
     pub levels: Option<WaterLevels>,
     pub films: GroundFilms,
-    pub mirror: Option<(Mat4, Vec3, f32)>,
+    pub mirrors: MirrorFrame,
     pub mirror_strength: f32,
     pub buffer: AssetId<ShaderBuffer>,
     pub anchor: Vec3,
@@ -153,6 +153,7 @@ fn water_look(appearance: &WaterAppearance, surface: &SurfaceState) -> WaterLook
         ],
         ripples: [0.0; 4],
         waves: [0.0; 4],
+        place: [0.0; 4],
     }
 }
 
@@ -182,7 +183,7 @@ pub(super) fn extract_rain(
     let sun = suns
         .iter()
         .max_by(|(a, _), (b, _)| a.illuminance.total_cmp(&b.illuminance));
-    let (images, levels, films, appearance, mirror) = &*water;
+    let (images, levels, films, appearance, mirrors) = &*water;
     // What does not validate has been named in the log.
     let appearance = appearance.as_ref().and_then(|a| a.validated().ok()).unwrap_or_default();
     commands.insert_resource(ExtractedRainScene {
@@ -212,7 +213,7 @@ pub(super) fn extract_rain(
                 .filter(|l| l.is_valid() && !l.levels_m().is_empty())
                 .map(|l| (**l).clone()),
             films: films.as_ref().map(|f| (**f).clone()).unwrap_or_default(),
-            mirror: mirror.as_ref().and_then(|m| m.view),
+            mirrors: mirrors.as_ref().map(|m| **m).unwrap_or_default(),
             mirror_strength: appearance.reflection_strength,
             buffer: surface.handles.params.id(),
             anchor: surface.anchor,

@@ -23,7 +23,10 @@ use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor}
 use bevy::prelude::*;
 pub(crate) use bevy::render::RenderApp;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
-use bevy::render::render_resource::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use bevy::render::render_resource::{
+    Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureViewDescriptor,
+    TextureViewDimension,
+};
 use bevy::render::renderer::RenderAdapterInfo;
 use bevy::render::renderer::RenderGraph;
 use bevy::render::sync_component::SyncComponent;
@@ -139,12 +142,17 @@ pub(crate) fn slope_image(texels: u32) -> Image {
     image
 }
 
-/// What the mirrored view is kept in.
-pub(crate) fn reflection_image(size: UVec2) -> Image {
+/// What mirrored views are kept in, a layer each.
+pub(crate) fn reflection_image(size: UVec2, layers: u32) -> Image {
     let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
     let size = size.clamp(UVec2::splat(16), UVec2::splat(4096));
     let mut image = gpu_image("rain reflection", size.x, size.y, REFLECTION_FORMAT, usage);
+    image.texture_descriptor.size.depth_or_array_layers = layers.max(1);
     image.texture_descriptor.mip_level_count = size.min_element().ilog2().min(6) + 1;
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2Array),
+        ..default()
+    });
     image
 }
 

@@ -12,6 +12,7 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa};
+use rain_render::compose;
 use rain_render::cover::open_sky;
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams};
 use rain_render::masks::{GroundMaps, MaskGpu};
@@ -31,7 +32,9 @@ pub(super) struct RainGpu {
     pub masks: MaskGpu,
     pub mask_bind_groups: HashMap<Entity, wgpu::BindGroup>,
     pub reflection: ReflectionMipsGpu,
-    pub reflection_target: Option<ReflectionMipsTarget>,
+    /// The layers of the texture that mirrored views are kept in, and that texture.
+    pub reflection_layers: Vec<ReflectionMipsTarget>,
+    reflection_kept: Option<wgpu::Texture>,
     pub slope_mips: SlopeMipsGpu,
     pub waves: WavesGpu,
     pub ripple_tile: Option<WaveTileGpu>,
@@ -60,7 +63,8 @@ impl FromWorld for RainGpu {
             masks: MaskGpu::new(device),
             mask_bind_groups: HashMap::new(),
             reflection: ReflectionMipsGpu::new(device),
-            reflection_target: None,
+            reflection_layers: Vec::new(),
+            reflection_kept: None,
             slope_mips: SlopeMipsGpu::new(device),
             waves: WavesGpu::new(device),
             ripple_tile: None,
@@ -75,7 +79,7 @@ impl FromWorld for RainGpu {
 fn texture_bytes(texture: &wgpu::Texture) -> usize {
     let texel = texture.format().block_copy_size(None).unwrap_or(4) as usize;
     let level = |i: u32| (texture.width() >> i).max(1) as usize * (texture.height() >> i).max(1) as usize;
-    (0..texture.mip_level_count()).map(level).sum::<usize>() * texel
+    (0..texture.mip_level_count()).map(level).sum::<usize>() * texel * texture.depth_or_array_layers() as usize
 }
 
 /// Writes one texel for each cell, row after row, if there are as many.
@@ -167,16 +171,17 @@ fn surface_params(
             present: f32::from(u8::from(l.any_water())),
             films: f32::from(u8::from(surface.films.texels.len() == l.levels_m().len())),
         });
-    let reflection = surface
-        .mirror
-        .map_or_else(ReflectionParams::default, |(clip_from_world, at, height)| {
-            ReflectionParams {
-                clip_from_eye: (clip_from_world * Mat4::from_translation(eye)).to_cols_array_2d(),
-                eye: at.extend(surface.mirror_strength).to_array(),
-                plane: [height - eye.y, 0.0, 0.0, 0.0],
-            }
-        });
+    let mirrors = surface.mirrors.views.map(|view| {
+        view.map_or_else(ReflectionParams::default, |view| ReflectionParams {
+            clip_from_eye: view.clip_from(eye).to_cols_array_2d(),
+            eye: view.eye.extend(surface.mirror_strength).to_array(),
+            plane: [view.height - eye.y, 0.0, 0.0, 0.0],
+        })
+    });
     let mut water = surface.water;
+    let wind_tile_m = compose::WIND_TILE / f64::from(water.ambient[1]);
+    let place = (origin.xz() / wind_tile_m).fract_gl().as_vec2();
+    water.place = [place.x, place.y, 0.0, 0.0];
     if waves.ripple_side_m > 0.0 {
         let place = (origin.xz() / waves.ripple_side_m).fract_gl().as_vec2();
         water.ripples = [(1.0 / waves.ripple_side_m) as f32, place.x, place.y, 1.0];
@@ -192,7 +197,7 @@ fn surface_params(
         cover,
         levels,
         water,
-        reflection,
+        mirrors,
     }
 }
 
@@ -234,13 +239,19 @@ pub(super) fn prepare_rain(
         queue.write_buffer(&buffer.buffer, 0, bytemuck::bytes_of(&params));
     }
     prepare_waves(gpu, device, &queue, &images, &scene, &waves);
-    if gpu.reflection_target.is_none()
-        && let Some(kept) = scene
-            .surface
-            .as_ref()
-            .and_then(|s| images.get(s.images.as_ref()?.reflection))
+    if let Some(kept) = scene
+        .surface
+        .as_ref()
+        .and_then(|s| images.get(s.images.as_ref()?.reflection))
     {
-        gpu.reflection_target = Some(gpu.reflection.bind(device, &kept.texture));
+        // It is made anew when more views ask for a mirror.
+        let kept: &wgpu::Texture = &kept.texture;
+        if gpu.reflection_kept.as_ref() != Some(kept) {
+            gpu.reflection_layers = (0..kept.depth_or_array_layers())
+                .map(|layer| gpu.reflection.bind(device, kept, layer))
+                .collect();
+            gpu.reflection_kept = Some(kept.clone());
+        }
     }
     let ground_maps = scene
         .surface

@@ -72,16 +72,16 @@ pub(super) fn water(gpu: Res<RainGpu>, waves: Res<ExtractedWaves>, report: Res<R
     }
 }
 
-/// Copies the mirrored view into the texture that wet materials read.
+/// Copies a mirrored view into its layer of the texture that wet materials read.
 pub(super) fn keep_reflection(
-    view: ViewQuery<&ViewTarget, With<RainMirrorView>>,
+    view: ViewQuery<(&ViewTarget, &RainMirrorView)>,
     scene: Option<Res<ExtractedRainScene>>,
     images: Res<RenderAssets<GpuImage>>,
     gpu: Res<RainGpu>,
     report: Res<RainReport>,
     mut ctx: RenderContext,
 ) {
-    let target = view.into_inner();
+    let (target, mirror) = view.into_inner();
     let Some(surface) = scene.as_ref().and_then(|s| s.surface.as_ref()) else {
         return;
     };
@@ -91,14 +91,16 @@ pub(super) fn keep_reflection(
     let source: &wgpu::Texture = target.main_texture();
     let kept: &wgpu::Texture = &kept.texture;
     let (true, true, Some(mips)) = (
-        source.size() == kept.size(),
+        (source.width(), source.height()) == (kept.width(), kept.height()),
         source.format() == kept.format(),
-        &gpu.reflection_target,
+        gpu.reflection_layers.get(mirror.layer as usize),
     ) else {
         return;
     };
+    let mut layer = kept.as_image_copy();
+    layer.origin.z = mirror.layer;
     ctx.command_encoder()
-        .copy_texture_to_texture(source.as_image_copy(), kept.as_image_copy(), kept.size());
+        .copy_texture_to_texture(source.as_image_copy(), layer, source.size());
     let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some("rain_reflection_mips"),
         timestamp_writes: None,
@@ -106,6 +108,12 @@ pub(super) fn keep_reflection(
     encode_reflection_mips(&mut pass, &gpu.reflection, mips);
     drop(pass);
     report.recorded(PassName::Reflection);
+}
+
+/// Draws into the part of the target that the view has; its pixels are counted from that part's corner.
+fn draw_within(pass: &mut wgpu::RenderPass, viewport: UVec4) {
+    let [x, y, width, height] = viewport.as_vec4().to_array();
+    pass.set_viewport(x, y, width, height, 0.0, 1.0);
 }
 
 /// Projects and draws a view's streaks over its colour target, and its masks where somebody asked for them.
@@ -150,6 +158,7 @@ pub(super) fn rainfall(
             multiview_mask: None,
         });
         let span = recorder.pass_span(&mut pass, "rain_rainfall");
+        draw_within(&mut pass, view.viewport);
         encode_draw(&mut pass, &gpu.rainfall, view_gpu, view.target_format, msaa.samples());
         span.end(&mut pass);
         drop(pass);
@@ -186,6 +195,7 @@ pub(super) fn rainfall(
         multiview_mask: None,
     });
     if let Some(view_gpu) = view_gpu {
+        draw_within(&mut pass, view.viewport);
         encode_coverage(&mut pass, &gpu.rainfall, view_gpu, msaa.samples());
     }
     drop(pass);

@@ -47,8 +47,8 @@ pub struct WetSurface {
     /// Slopes of interactive waves.
     #[texture(106)]
     pub waves: Handle<Image>,
-    /// The mirrored view.
-    #[texture(107)]
+    /// The mirrored views.
+    #[texture(107, dimension = "2d_array")]
     pub reflection: Handle<Image>,
     /// Painted channels; without it white, which is unpainted ground.
     #[texture(108)]
@@ -90,6 +90,7 @@ impl Plugin for WetMaterialPlugin {
                 "cover",
                 "wetness",
                 "standing_water",
+                "wind_waves",
                 "placed_water",
                 "ground_memory",
             ]

@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::gltf::GltfMaterialName;
-use bevy::math::DVec3;
-use bevy::mesh::{Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
+use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
 use super::OriginalMaterial;
+use super::gaps::{Gap, SceneGap, report_ground};
+use super::triangles::{MeshTriangles, triangles_of};
 use crate::schedule::RainViewSystems;
 
 /// Put on a mesh (or its root) that moves: it covers rain in the picture, but is no ground, and state does not depend
@@ -33,9 +34,10 @@ impl Plugin for SceneGeometryPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<HandedOver>()
             .register_type::<MovesInRain>()
+            .add_message::<SceneGap>()
             .add_systems(
                 PostUpdate,
-                hand_over
+                (hand_over, report_ground)
                     .in_set(RainViewSystems::Surfaces)
                     .run_if(resource_exists::<CoverField>.and_then(resource_exists::<SurfaceScene>)),
             );
@@ -45,7 +47,7 @@ impl Plugin for SceneGeometryPlugin {
 /// What has been handed over, by owner.
 #[derive(Resource, Default)]
 struct HandedOver {
-    owners: BTreeMap<u64, SurfaceClass>,
+    owners: BTreeMap<u64, (SurfaceClass, AssetId<Mesh>)>,
     /// Something was not ready: a material or mesh still being loaded.
     stale: bool,
 }
@@ -64,7 +66,7 @@ type ChangedSurface = (
 type Surface = (
     Entity,
     Ref<'static, GlobalTransform>,
-    Ref<'static, Mesh3d>,
+    &'static Mesh3d,
     &'static InheritedVisibility,
     OriginalMaterial,
     (
@@ -87,9 +89,19 @@ fn hand_over(
     parents: Query<&ChildOf>,
     changed: Query<(), ChangedSurface>,
     mut removed: RemovedComponents<Mesh3d>,
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut gaps: MessageWriter<SceneGap>,
 ) {
     let gone = removed.read().count() > 0;
-    if !handed.stale && !gone && changed.is_empty() {
+    // Bevy marks a mesh as changed also when its data has just come: that is no reason to take it in twice.
+    let modified: BTreeSet<AssetId<Mesh>> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    if !handed.stale && !gone && modified.is_empty() && changed.is_empty() {
         return;
     }
     let handed = &mut *handed;
@@ -119,7 +131,8 @@ fn hand_over(
             |c| c.0,
         );
         present.insert(owner);
-        if known == Some(wanted) && !mesh.is_changed() {
+        let wanted = (wanted, mesh.0.id());
+        if known == Some(wanted) && !modified.contains(&wanted.1) {
             continue;
         }
         let Some(mesh) = meshes.get(&mesh.0) else {
@@ -127,15 +140,31 @@ fn hand_over(
             present.remove(&owner);
             continue;
         };
-        // No data on the CPU: the picture alone knows of it.
-        let Some(triangles) = triangles_of(mesh, &transform) else {
-            present.remove(&owner);
-            continue;
+        let mut report = |gap: Gap| {
+            warn!("{entity}: {gap}");
+            gaps.write(SceneGap {
+                entity: Some(entity),
+                gap,
+            });
         };
-        if let Err(error) = cover.set(owner, &triangles, true) {
-            warn!("{entity} does not keep rain off in the simulation: {error}");
+        match triangles_of(mesh, &transform) {
+            // The picture alone knows of it.
+            Err(gap) => {
+                report(gap);
+                cover.remove(owner);
+                scene.remove(owner);
+            }
+            Ok(MeshTriangles { triangles, left_out }) => {
+                if left_out.any() {
+                    report(Gap::LeftOut(left_out));
+                }
+                if let Err(error) = cover.set(owner, &triangles, true) {
+                    report(Gap::NoCover(error));
+                    cover.remove(owner);
+                }
+                scene.set(owner, &triangles, wanted.0, true);
+            }
         }
-        scene.set(owner, &triangles, wanted, true);
         handed.owners.insert(owner, wanted);
     }
     let gone: Vec<u64> = handed.owners.keys().filter(|o| !present.contains(o)).copied().collect();
@@ -153,25 +182,4 @@ fn guess(material: Option<&str>, name: Option<&str>) -> SurfaceClass {
         .flatten()
         .find_map(surface_class_of_name)
         .unwrap_or_default()
-}
-
-/// World-space triangles of a mesh; `None` when it is no triangle list or its data lives on the GPU only.
-pub(crate) fn triangles_of(mesh: &Mesh, transform: &GlobalTransform) -> Option<Vec<[DVec3; 3]>> {
-    if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
-        return None;
-    }
-    let VertexAttributeValues::Float32x3(positions) = mesh.try_attribute(Mesh::ATTRIBUTE_POSITION).ok()? else {
-        return None;
-    };
-    let world: Vec<_> = positions
-        .iter()
-        .map(|p| transform.transform_point(Vec3::from_array(*p)).as_dvec3())
-        .collect();
-    let at = |i: usize| world.get(i).copied();
-    let triangle = |a: usize, b: usize, c: usize| Some([at(a)?, at(b)?, at(c)?]);
-    let corners: Vec<usize> = match mesh.try_indices().ok() {
-        Some(indices) => indices.iter().collect(),
-        None => (0..positions.len()).collect(),
-    };
-    corners.chunks_exact(3).map(|t| triangle(t[0], t[1], t[2])).collect()
 }

@@ -9,7 +9,7 @@ use rain_ecs::prelude::*;
 
 use super::state::SurfaceState;
 use super::water::{LEVEL_TEXELS, NO_WATER_M, WaterLevels};
-use crate::rainfall::RainView;
+use crate::rainfall::{RainView, leading_view};
 
 /// Where the levels come from.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -118,9 +118,9 @@ pub(super) fn follow_ground(
     mut surface: ResMut<SurfaceState>,
     mut all: Local<Vec<f32>>,
     ground: Option<Res<SurfaceGround>>,
-    views: Query<(&GlobalTransform, &Camera), With<RainView>>,
+    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
 ) {
-    let eye = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation());
+    let eye = leading_view(&views).map(GlobalTransform::translation);
     let built = ground.as_ref().and_then(|g| Some((g.ground()?, g.rebuilds())));
     let Some((ground, builds)) = built else {
         if shown.shown.take().is_some() {

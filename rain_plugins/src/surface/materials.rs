@@ -11,7 +11,7 @@ use super::dynamic::{OwnWetness, give_own_wetness};
 use super::geometry::SceneGeometryPlugin;
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
-use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirror};
+use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirrors};
 use super::state::{SurfaceState, create_state, follow_weather};
 use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::CoverMap;
@@ -117,7 +117,7 @@ impl Plugin for WetSurfacePlugin {
                 (
                     give_own_wetness,
                     check_appearance.run_if(resource_changed::<WaterAppearance>),
-                    (follow_weather, follow_ground, follow_films, aim_mirror)
+                    (follow_weather, follow_ground, follow_films, aim_mirrors)
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
@@ -147,13 +147,14 @@ fn check_appearance(appearance: Res<WaterAppearance>) {
     }
 }
 
-fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, mirror: Res<ReflectionSize>) {
+fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
     commands.insert_resource(WaterImages {
         levels: images.add(level_image(LEVEL_TEXELS)),
         films: images.add(film_image(LEVEL_TEXELS)),
         ripples: images.add(slope_image(256)),
         waves: images.add(slope_image(256)),
-        reflection: images.add(reflection_image(mirror.0)),
+        // Of no size before a view asks for a mirror.
+        reflection: images.add(reflection_image(UVec2::ONE, 1)),
     });
 }
 

@@ -5,20 +5,24 @@
 //! Changes that the app makes to the originals meanwhile are followed.
 
 mod dynamic;
+mod gaps;
 mod geometry;
 mod ground;
 mod materials;
 mod paint;
 mod reflection;
 mod state;
+mod triangles;
 mod water;
 
 pub use dynamic::OwnWetness;
+pub use gaps::{Gap, LeftOut, SceneGap};
 pub use geometry::MovesInRain;
-pub(crate) use geometry::{SceneGeometryPlugin, triangles_of};
+pub(crate) use geometry::SceneGeometryPlugin;
 pub use ground::{GroundFilms, LevelsFromGround};
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
 pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
-pub use reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize};
+pub use reflection::{MirrorFrame, MirrorView, PlanarReflection, RainMirrorView, ReflectionSize};
 pub use state::{SurfaceState, WAVE_PERIOD_S};
+pub(crate) use triangles::{MeshTriangles, triangles_of};
 pub use water::{LEVEL_TEXELS, NO_WATER_M, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};

@@ -1,4 +1,4 @@
-//! The mirrored view: what level water shows of the scene.
+//! Mirrored views: what level water shows of the scene.
 
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraProjection, Exposure, SubCameraView};
@@ -6,17 +6,18 @@ use bevy::ecs::query::QueryData;
 use bevy::light::{EnvironmentMapLight, Skybox};
 use bevy::math::Vec3A;
 use bevy::prelude::*;
+use rain_render::reflection::MAX_MIRRORS;
 
 use super::state::SurfaceState;
-use super::water::{WaterAppearance, WaterLevels};
+use super::water::{WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::AirAroundView;
 use crate::rainfall::RainView;
-use crate::render_adapter::{mirror_camera, reflection_target};
+use crate::render_adapter::{WetMaterial, mirror_camera, reflection_image, reflection_target};
 use crate::report::{PassName, RainReport, SkipReason};
 
 /// Put on a camera with [`RainView`] and a perspective projection: wet ground mirrors the scene itself, not only the
-/// environment map. Costs a second, smaller view of the scene in frames in which the ground is wet. The first such
-/// view has it.
+/// environment map. Costs a second, smaller view of the scene in frames in which the ground is wet. At most
+/// [`MAX_MIRRORS`] active views have it, by the order of their cameras.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default)]
 pub struct PlanarReflection {
@@ -24,7 +25,7 @@ pub struct PlanarReflection {
     pub height_m: Option<f32>,
 }
 
-/// Size of the mirrored view. Set it before the first update. Units: px. Default: 640 × 360.
+/// Size of a mirrored view. Set it before the first view asks for one. Units: px. Default: 640 × 360.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Resource, Default)]
 pub struct ReflectionSize(pub UVec2);
@@ -35,17 +36,40 @@ impl Default for ReflectionSize {
     }
 }
 
-/// Marks the plugin's own mirrored camera.
+/// Marks the plugin's own mirrored cameras.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Component, Default)]
-pub struct RainMirrorView;
+pub struct RainMirrorView {
+    /// Layer of the texture that its picture is kept in.
+    pub layer: u32,
+}
 
-/// What the frame's mirror shows.
+/// A view in its mirror.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MirrorView {
+    /// The eye that it belongs to. Units: m, world.
+    pub eye: Vec3,
+    /// Of the mirror. Units: m, world.
+    pub height: f32,
+    /// Its image under the plane.
+    mirrored_eye: Vec3,
+    /// Places relative to the mirrored eye to its clip space: without the world's large numbers.
+    clip_from_mirrored_eye: Mat4,
+}
+
+impl MirrorView {
+    /// Places relative to `origin` (world, m) to the mirrored view's clip space.
+    #[must_use]
+    pub fn clip_from(&self, origin: Vec3) -> Mat4 {
+        self.clip_from_mirrored_eye * Mat4::from_translation(origin - self.mirrored_eye)
+    }
+}
+
+/// The frame's mirrors, by layer.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub struct MirrorFrame {
-    /// World to the mirrored view's clip space, the eye it belongs to and the mirror's height in m; `None`: no mirror
-    /// this frame.
-    pub view: Option<(Mat4, Vec3, f32)>,
+    /// None: no mirror in this layer.
+    pub views: [Option<MirrorView>; MAX_MIRRORS],
 }
 
 /// The projection of the view that is mirrored, cut off at the mirror; the target's shape does not change it.
@@ -107,103 +131,152 @@ fn water_ahead(levels: &WaterLevels, eye: Vec3, forward: Vec3) -> Option<f32> {
     (weights > 0.0).then(|| sum / weights)
 }
 
-/// Mirrors the first view that asks for it about the water, or puts the mirror to sleep.
-pub(super) fn aim_mirror(
+/// Where a mirrored camera stands and how it sees.
+struct Aim {
+    transform: Transform,
+    projection: MirrorProjection,
+    view: MirrorView,
+}
+
+/// Mirrors a view about the water ahead, or says why not.
+fn aim(
+    view: &MirroredItem,
+    surface: &SurfaceState,
+    levels: &WaterLevels,
+    strength: f32,
+    closed_in: Option<Entity>,
+) -> Result<Aim, SkipReason> {
+    if strength <= 0.0 {
+        return Err(SkipReason::Disabled);
+    }
+    if !surface.wet {
+        return Err(SkipReason::Dry);
+    }
+    // Where no rain can be in sight, no ground is wet.
+    if closed_in == Some(view.entity) {
+        return Err(SkipReason::Indoors);
+    }
+    let Projection::Perspective(own) = view.projection else {
+        return Err(SkipReason::Unsupported);
+    };
+    let eye = view.transform.translation();
+    let height = view
+        .reflection
+        .height_m
+        .or_else(|| water_ahead(levels, eye, view.transform.forward().into()))
+        .or(surface.ground_m)
+        .filter(|h| h.is_finite() && *h < eye.y - 0.02)
+        .ok_or(SkipReason::NoWater)?;
+    let reflect = Mat4::from_translation(Vec3::Y * (2.0 * height)) * Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0));
+    let transform = Transform::from_matrix(reflect * view.transform.to_matrix());
+    // The scene under the plane is not mirrored; the plane in view space looks up.
+    let view_from_world = view.transform.affine().matrix3.inverse();
+    let normal = Vec3::from((view_from_world * Vec3A::NEG_Y).normalize());
+    let projection = MirrorProjection(PerspectiveProjection {
+        near_clip_plane: normal.extend(height - eye.y),
+        ..own.clone()
+    });
+    let turned = Mat4::from_mat3(Mat3::from_quat(transform.rotation) * Mat3::from_diagonal(transform.scale));
+    Ok(Aim {
+        view: MirrorView {
+            eye,
+            height,
+            mirrored_eye: transform.translation,
+            clip_from_mirrored_eye: projection.get_clip_from_view() * turned.inverse(),
+        },
+        transform,
+        projection,
+    })
+}
+
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct MirrorCamera {
+    entity: Entity,
+    mirror: &'static RainMirrorView,
+    camera: &'static mut Camera,
+    transform: &'static mut Transform,
+    global: &'static mut GlobalTransform,
+    projection: &'static mut Projection,
+}
+
+/// Mirrors the views that ask for it about the water, each in its layer, or puts mirrors to sleep.
+pub(super) fn aim_mirrors(
     mut commands: Commands,
     mut frame: ResMut<MirrorFrame>,
     surface: Res<SurfaceState>,
     levels: Res<WaterLevels>,
     appearance: Res<WaterAppearance>,
-    size: Res<ReflectionSize>,
+    (size, water): (Res<ReflectionSize>, Res<WaterImages>),
     report: Res<RainReport>,
     air: Option<Res<AirAroundView>>,
     views: Query<Mirrored, (With<RainView>, Without<RainMirrorView>)>,
-    mut mirrors: Query<
-        (
-            Entity,
-            &mut Camera,
-            &mut Transform,
-            &mut GlobalTransform,
-            &mut Projection,
-        ),
-        With<RainMirrorView>,
-    >,
-    mut image_assets: ResMut<Assets<Image>>,
+    mut mirrors: Query<MirrorCamera>,
+    mut images: ResMut<Assets<Image>>,
+    mut wet: ResMut<Assets<WetMaterial>>,
+    mut layers: Local<usize>,
 ) {
-    frame.view = None;
-    let view = views.iter().find(|v| v.camera.is_active);
-    let found = mirrors.single_mut();
-    let reason = match &view {
-        None => Some(SkipReason::NoView),
-        Some(_) if appearance.reflection_strength <= 0.0 => Some(SkipReason::Disabled),
-        Some(_) if !surface.wet => Some(SkipReason::Dry),
-        // Where no rain can be in sight, no ground is wet.
-        Some(v) if air.as_ref().is_some_and(|a| a.closed_in == Some(v.entity)) => Some(SkipReason::Indoors),
-        Some(v) if !matches!(v.projection, Projection::Perspective(_)) => Some(SkipReason::Unsupported),
-        Some(_) => None,
-    };
-    let height = view.as_ref().and_then(|v| {
-        let eye = v.transform.translation();
-        let height = v
-            .reflection
-            .height_m
-            .or_else(|| water_ahead(&levels, eye, v.transform.forward().into()))
-            .or(surface.ground_m);
-        height.filter(|h| h.is_finite() && *h < eye.y - 0.02)
-    });
-    let reason = reason.or(height.is_none().then_some(SkipReason::NoWater));
-    if let Some(reason) = reason {
-        if view.is_some() || found.is_ok() {
-            report.skipped(PassName::Reflection, reason);
-        }
-        if let Ok((_, mut camera, ..)) = found {
-            camera.is_active = false;
-        }
-        return;
+    frame.views = default();
+    let mut asking: Vec<_> = views.iter().filter(|v| v.camera.is_active).collect();
+    asking.sort_by_key(|v| (v.camera.order, v.entity.index_u32()));
+    if asking.len() > MAX_MIRRORS {
+        warn_once!("{} views ask for a mirror, {MAX_MIRRORS} have one", asking.len());
+        asking.truncate(MAX_MIRRORS);
     }
-    let (Some(view), Some(height)) = (view, height) else {
-        return;
-    };
-    let Projection::Perspective(own) = view.projection else {
-        return;
-    };
-    let eye = view.transform.translation();
-    let reflect = Mat4::from_translation(Vec3::Y * (2.0 * height)) * Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0));
-    let world_from_view = reflect * view.transform.to_matrix();
-    let transform = Transform::from_matrix(world_from_view);
-    // The scene under the plane is not mirrored; the plane in view space looks up.
-    let view_from_world = view.transform.affine().matrix3.inverse();
-    let normal = (view_from_world * Vec3A::NEG_Y).normalize();
-    let normal = Vec3::from(normal);
-    let projection = MirrorProjection(PerspectiveProjection {
-        near_clip_plane: normal.extend(height - eye.y),
-        ..own.clone()
-    });
-    let clip_from_world = projection.get_clip_from_view() * world_from_view.inverse();
-    let Ok((mirror, mut camera, mut own_transform, mut global, mut own_projection)) = found else {
-        let target = image_assets.add(reflection_target(size.0));
-        commands.spawn((
-            RainMirrorView,
-            mirror_camera(target),
-            transform,
-            Projection::custom(projection),
-        ));
-        return;
-    };
-    frame.view = Some((clip_from_world, eye, height));
-    camera.is_active = true;
-    *own_transform = transform;
-    *global = GlobalTransform::from(transform);
-    *own_projection = Projection::custom(projection);
-    let mut mirror = commands.entity(mirror);
-    // What lights and veils the view, lights and veils its mirror.
-    macro_rules! follow {
-        ($($field:ident: $type:ty),*) => {
-            $(match view.$field {
-                Some(value) => { mirror.insert(value.clone()); }
-                None => { mirror.remove::<$type>(); }
-            })*
+    if asking.is_empty() && !mirrors.is_empty() {
+        report.skipped(PassName::Reflection, SkipReason::NoView);
+    }
+    let closed_in = air.as_ref().and_then(|air| air.closed_in);
+    let mut aims: [Option<Aim>; MAX_MIRRORS] = default();
+    for (slot, view) in aims.iter_mut().zip(&asking) {
+        match aim(view, &surface, &levels, appearance.reflection_strength, closed_in) {
+            Ok(aim) => *slot = Some(aim),
+            Err(reason) => report.skipped(PassName::Reflection, reason),
+        }
+    }
+    let wanted = aims.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+    if wanted > *layers {
+        *layers = wanted;
+        let grown = images.insert(water.reflection.id(), reflection_image(size.0, wanted as u32));
+        debug_assert!(grown.is_ok(), "the handle is alive");
+        // What is bound is the old texture.
+        for _ in wet.iter_mut() {}
+    }
+    let mut spawned = [false; MAX_MIRRORS];
+    for mut own in &mut mirrors {
+        let layer = own.mirror.layer as usize;
+        let (Some(Some(aim)), Some(view)) = (aims.get(layer), asking.get(layer)) else {
+            own.camera.is_active = false;
+            continue;
         };
+        spawned[layer] = true;
+        frame.views[layer] = Some(aim.view);
+        own.camera.is_active = true;
+        *own.transform = aim.transform;
+        *own.global = GlobalTransform::from(aim.transform);
+        *own.projection = Projection::custom(aim.projection.clone());
+        let mut mirror = commands.entity(own.entity);
+        // What lights and veils the view, lights and veils its mirror.
+        macro_rules! follow {
+            ($($field:ident: $type:ty),*) => {
+                $(match view.$field {
+                    Some(value) => { mirror.insert(value.clone()); }
+                    None => { mirror.remove::<$type>(); }
+                })*
+            };
+        }
+        follow!(exposure: Exposure, environment: EnvironmentMapLight, sky: Skybox, fog: DistanceFog, layers: RenderLayers);
     }
-    follow!(exposure: Exposure, environment: EnvironmentMapLight, sky: Skybox, fog: DistanceFog, layers: RenderLayers);
+    for (layer, aim) in (0..).zip(aims) {
+        let Some(aim) = aim.filter(|_| !spawned[layer as usize]) else {
+            continue;
+        };
+        let target = images.add(reflection_target(size.0));
+        commands.spawn((
+            RainMirrorView { layer },
+            mirror_camera(target),
+            aim.transform,
+            Projection::custom(aim.projection),
+        ));
+    }
 }

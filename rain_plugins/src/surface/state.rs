@@ -5,11 +5,11 @@ use rain_ecs::prelude::*;
 
 use super::paint::PuddlePaint;
 use super::water::WaterLevels;
-use crate::rainfall::RainView;
+use crate::rainfall::{RainView, leading_view};
 use crate::render_adapter::WetSurfaceHandles;
 
-/// After this time wind waves start anew. Units: s.
-pub const WAVE_PERIOD_S: f64 = 4096.0;
+/// After this time wind waves repeat. Units: s.
+pub const WAVE_PERIOD_S: f64 = rain_render::compose::WAVE_PERIOD_S;
 
 /// The class whose wetness every material shows.
 const CLASS: SurfaceClass = SurfaceClass::Asphalt;
@@ -58,12 +58,12 @@ pub(super) fn follow_weather(
     clock: Res<RainClock>,
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
-    views: Query<(&GlobalTransform, &Camera), With<RainView>>,
+    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
     painted: Query<(), With<PuddlePaint>>,
     levels: Res<WaterLevels>,
 ) {
     surface.shown = !painted.is_empty();
-    let eye = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation());
+    let eye = leading_view(&views).map(GlobalTransform::translation);
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
     let Some(weather) = state else {

@@ -237,7 +237,7 @@ pub struct WaterImages {
     pub ripples: Handle<Image>,
     /// Slopes of interactive waves near the view (Rgba16Float).
     pub waves: Handle<Image>,
-    /// The mirrored view (Rgba16Float).
+    /// The mirrored views (Rgba16Float), a layer each.
     pub reflection: Handle<Image>,
 }
 

@@ -61,6 +61,11 @@ pub(super) fn rain_on_water(
     let rings = &mut *rings;
     rings.handover.wanted = false;
     let now = seen_ns(&clock);
+    if rings.now_ns.is_some_and(|before| now < before) {
+        // The clock was set back: the drops of what is to come have not fallen yet.
+        rings.tile.reset();
+        rings.now_ns = None;
+    }
     let seen = views.iter().any(|c| c.is_active);
     let reason = if !seen {
         Some(SkipReason::NoView)

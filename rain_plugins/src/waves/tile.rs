@@ -7,7 +7,7 @@ use rain_render::waves::{Disturbance, MAX_DISTURBANCES, WaveTile};
 use super::Handover;
 use super::disturb::{DisturberMotion, WaterDisturber};
 use super::rings::seen_ns;
-use crate::rainfall::RainView;
+use crate::rainfall::{RainView, leading_view};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::surface::WaterLevels;
 
@@ -66,12 +66,17 @@ pub(super) fn move_water(
     clock: Res<RainClock>,
     levels: Res<WaterLevels>,
     report: Res<RainReport>,
-    views: Query<(&Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
     mut disturbers: Query<(&WaterDisturber, &GlobalTransform, &mut DisturberMotion)>,
 ) {
     let waves = &mut *waves;
     waves.handover.wanted = false;
     let now = seen_ns(&clock);
+    if waves.now_ns.is_some_and(|before| now < before) {
+        // The clock was set back: nothing has moved the water yet, and what stands in it is another.
+        waves.tile.reset();
+        waves.filled = None;
+    }
     let elapsed = waves.now_ns.map_or(0, |before| now.saturating_sub(before));
     waves.now_ns = Some(now);
     let seconds = elapsed as f32 / 1e9;
@@ -87,7 +92,7 @@ pub(super) fn move_water(
             found.extend(disturbance);
         }
     }
-    let view = views.iter().find(|(c, _)| c.is_active).map(|(_, t)| t);
+    let view = leading_view(&views);
     let reason = match view {
         None => Some(SkipReason::NoView),
         Some(_) if !levels.any_water() => Some(SkipReason::NoWater),

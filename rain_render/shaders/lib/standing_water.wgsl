@@ -60,28 +60,3 @@ fn rain_under_water(dry: vec3<f32>, look: WaterLook, depth: f32, cos_incidence: 
     let hidden = 1.0 - exp(-turbidity * depth * (1.0 / refracted + 1.19));
     return ground + enters * look.mud.xyz * hidden * turbidity / max(loss, vec3<f32>(1e-9));
 }
-
-// Slopes (dh/dx, dh/dz) of wind waves at `p` (any origin that stays), `time` in s: five deep-water wave trains within
-// 40 degrees of the wind, each half as long and a third as steep as the one before it.
-fn rain_wind_slopes(look: WaterLook, p: vec2<f32>, time: f32) -> vec2<f32> {
-    let speed = length(look.ambient.zw);
-    if (look.ambient.x <= 0.0 || speed <= 0.0) {
-        return vec2<f32>(0.0);
-    }
-    let along = look.ambient.zw / speed;
-    var angles = array<f32, 5>(0.1, -0.52, 0.44, -0.23, 0.68);
-    var slopes = vec2<f32>(0.0);
-    var number = 6.2831853 * look.ambient.y;
-    // Mean squares 1, 1/1.7, ... of each train sum up to look.ambient.x.
-    var square = look.ambient.x * 0.4428;
-    for (var i = 0; i < 5; i++) {
-        let c = cos(angles[i]);
-        let s = sin(angles[i]);
-        let direction = vec2<f32>(c * along.x - s * along.y, s * along.x + c * along.y);
-        let phase = number * (dot(direction, p) - speed * time) + 1.7 * f32(i);
-        slopes += direction * (sqrt(2.0 * square) * cos(phase));
-        number *= 2.13;
-        square /= 1.7;
-    }
-    return slopes;
-}

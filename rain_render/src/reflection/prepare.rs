@@ -6,6 +6,9 @@ use crate::compose;
 /// Format of the mirrored view.
 pub const REFLECTION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
+/// Most views that are mirrored at once, each in its layer of the texture.
+pub const MAX_MIRRORS: usize = 4;
+
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
 pub struct ReflectionMipsGpu {
@@ -13,7 +16,7 @@ pub struct ReflectionMipsGpu {
     pipeline: wgpu::ComputePipeline,
 }
 
-/// The bindings of one texture.
+/// The bindings of one layer of a texture.
 #[derive(Debug)]
 pub struct ReflectionMipsTarget {
     levels: Vec<(wgpu::BindGroup, [u32; 2])>,
@@ -52,14 +55,17 @@ impl ReflectionMipsGpu {
         Self { layout, pipeline }
     }
 
-    /// Binds a texture of [`REFLECTION_FORMAT`] that may be bound as texture and as storage. Once for each texture,
-    /// not for each frame.
+    /// Binds a layer of a texture of [`REFLECTION_FORMAT`] that may be bound as texture and as storage. Once for each
+    /// texture, not for each frame.
     #[must_use]
-    pub fn bind(&self, device: &wgpu::Device, texture: &wgpu::Texture) -> ReflectionMipsTarget {
+    pub fn bind(&self, device: &wgpu::Device, texture: &wgpu::Texture, layer: u32) -> ReflectionMipsTarget {
         let view = |level| {
             texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
                 base_mip_level: level,
                 mip_level_count: Some(1),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
                 ..Default::default()
             })
         };

@@ -2,6 +2,7 @@
 
 mod cover_parity;
 mod device;
+mod far;
 mod field_parity;
 mod hash_parity;
 mod maps;

@@ -30,7 +30,7 @@ fn levels(size: [u32; 2], count: u32, texel: impl Fn(u32, u32) -> [f32; 4]) -> O
         .collect();
     write_map(&gpu, &texture, &texels);
     let mips = ReflectionMipsGpu::new(&gpu.device);
-    let target = mips.bind(&gpu.device, &texture);
+    let target = mips.bind(&gpu.device, &texture, 0);
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

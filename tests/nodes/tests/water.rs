@@ -59,7 +59,10 @@ fn noise_puddles_have_no_steps_and_use_the_whole_range() {
     let input: Vec<[f32; 4]> = (0..20_000_u16)
         .map(|i| [f32::from(i) * 0.002 - 20.0, 1.37, 0.0, 0.0])
         .collect();
-    let Some(found) = evaluate("vec4<f32>(rain_puddle_noise(v.xy, 7u))", &input) else {
+    let Some(found) = evaluate(
+        "vec4<f32>(rain_puddle_noise(vec2<f32>(0.0), v.xy, vec2<f32>(1.0), 7u))",
+        &input,
+    ) else {
         return;
     };
     let values: Vec<f32> = found.iter().map(|f| f[0]).collect();
@@ -92,7 +95,7 @@ fn ground_under_water_is_the_cpus() {
         let [mr, mg, mb] = water.mud_albedo;
         let zero = "vec4<f32>(0.0)";
         let look = format!(
-            "WaterLook(vec4<f32>({r:?}, {g:?}, {b:?}, 0.0), vec4<f32>({mr:?}, {mg:?}, {mb:?}, {:?}), {zero}, {zero}, {zero})",
+            "WaterLook(vec4<f32>({r:?}, {g:?}, {b:?}, 0.0), vec4<f32>({mr:?}, {mg:?}, {mb:?}, {:?}), {zero}, {zero}, {zero}, {zero})",
             water.turbidity_per_m
         );
         for dry in [0.0, 0.1, 0.4, 1.0] {
@@ -164,31 +167,4 @@ fn a_shift_on_the_ground_is_the_same_in_pixels() {
         found.iter().all(|f| f == &[0.0; 4]),
         "a ground seen edge on moves nothing"
     );
-}
-
-#[test]
-fn wind_waves_have_the_slopes_they_are_given() {
-    let zero = "vec4<f32>(0.0)";
-    let call = |square: f32| {
-        format!(
-            "vec4<f32>(rain_wind_slopes(WaterLook({zero}, {zero}, vec4<f32>({square:?}, 4.0, 0.24, -0.18), {zero}, {zero}), \
-             v.xy, v.z), 0.0, 0.0)"
-        )
-    };
-    let input: Vec<[f32; 4]> = (0..60_000_u32)
-        .map(|i| {
-            [
-                (i % 300) as f32 * 0.137,
-                (i / 300) as f32 * 0.211,
-                (i % 7) as f32 * 0.9,
-                0.0,
-            ]
-        })
-        .collect();
-    let (Some(found), Some(calm)) = (evaluate(&call(0.01), &input), evaluate(&call(0.0), &input)) else {
-        return;
-    };
-    let square: f32 = found.iter().map(|f| f[0] * f[0] + f[1] * f[1]).sum::<f32>() / found.len() as f32;
-    assert!((square / 0.01 - 1.0).abs() < 0.02, "{square}");
-    assert!(calm.iter().all(|f| f == &[0.0; 4]), "no wind, no waves");
 }

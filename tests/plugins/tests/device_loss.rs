@@ -9,23 +9,12 @@ use rain_plugins::prelude::*;
 use test_support::app::{FRAME, TestApp};
 use test_support::{gpu, world};
 
-#[test]
-fn passes_are_recorded_again_after_the_device_was_lost() {
-    if !gpu::available() {
-        return;
-    }
-    let mut test = TestApp::new([96, 54], true);
-    world::ground(test.world());
-    world::roof(test.world());
-    test.world().spawn(Weather::rain(50.0));
-    test.look(Vec3::new(0.0, 1.7, 12.0), Vec3::new(0.0, 1.5, 0.0));
+use crate::scenes::{difference, hollow_at, rain};
+
+/// Destroys the device and waits until Bevy has another.
+fn lose_device(test: &mut TestApp) {
     test.app
         .insert_resource(RenderErrorHandler(|_, _, _| RenderErrorPolicy::Recover(default())));
-    test.frames(20, FRAME);
-    assert!(test.recorded(PassName::Rainfall) > 10 && test.recorded(PassName::Cover) > 0);
-    let before = test.picture();
-
-    test.reset();
     let lost = test.app.world().resource::<RenderDevice>().clone();
     // Two devices may have the same identity, since each instance counts its own: ask when the resource was replaced.
     let replaced = |test: &TestApp| {
@@ -48,6 +37,24 @@ fn passes_are_recorded_again_after_the_device_was_lost() {
         }
     }
     assert!(rebuilt, "no new device");
+}
+
+#[test]
+fn passes_are_recorded_again_after_the_device_was_lost() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = TestApp::new([96, 54], true);
+    world::ground(test.world());
+    world::roof(test.world());
+    test.world().spawn(Weather::rain(50.0));
+    test.look(Vec3::new(0.0, 1.7, 12.0), Vec3::new(0.0, 1.5, 0.0));
+    test.frames(20, FRAME);
+    assert!(test.recorded(PassName::Rainfall) > 10 && test.recorded(PassName::Cover) > 0);
+    let before = test.picture();
+
+    test.reset();
+    lose_device(&mut test);
     test.frames(10, FRAME);
     assert!(
         test.recorded(PassName::Rainfall) >= 10,
@@ -67,4 +74,27 @@ fn passes_are_recorded_again_after_the_device_was_lost() {
         differing * 5 < all,
         "{differing} of {all} pixels are others than before the loss"
     );
+}
+
+#[test]
+fn puddles_films_and_mirrors_are_uploaded_again_after_the_device_was_lost() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, weather) = hollow_at(Vec3::ZERO);
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(PlanarReflection::default());
+    let dry = test.picture();
+    rain(&mut test, weather, 60.0, 1200);
+    // Nothing falls and nothing dries while the device is gone: the same picture is wanted.
+    let before = test.picture();
+    let changed = difference(&dry, &before);
+    assert!(changed.mean > 5.0, "{changed:?}");
+    lose_device(&mut test);
+    test.frames(6, Duration::ZERO);
+    test.reset();
+    let after = test.picture();
+    assert!(test.recorded(PassName::Reflection) > 0, "the mirror is drawn again");
+    let found = difference(&before, &after);
+    assert!(found.mean < 0.05 * changed.mean, "{found:?}, rain {changed:?}");
 }

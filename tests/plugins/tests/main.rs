@@ -1,9 +1,16 @@
 //! The plugins inside a Bevy app.
 
+mod bad_meshes;
 mod device_loss;
+mod far_scene;
 mod groups;
+mod large_scene;
 mod materials;
+mod mirrors;
 mod placed_puddles;
 mod puddles;
+mod rewind;
+mod scenes;
 mod skipping;
 mod two_views;
+mod views;

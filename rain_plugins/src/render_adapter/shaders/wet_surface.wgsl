@@ -2,10 +2,11 @@
 
 #import bevy_pbr::{
     pbr_fragment::pbr_input_from_standard_material,
-    pbr_functions::alpha_discard,
+    pbr_functions::{alpha_discard, calculate_view},
     pbr_bindings::{depth_map_texture, depth_map_sampler},
     mesh_functions::get_tag,
     mesh_view_bindings::view,
+    view_transformations::{direction_view_to_world, frag_coord_to_ndc, position_ndc_to_view},
 }
 #import rain::surface::{
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
@@ -47,7 +48,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var rain_ripple_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(105) var rain_sampler: sampler;
 @group(#{MATERIAL_BIND_GROUP}) @binding(106) var rain_wave_map: texture_2d<f32>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(109) var rain_film_map: texture_2d<f32>;
 
@@ -72,7 +73,7 @@ fn water_surface(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, depth: f32, expos
     if (room <= 0.0) {
         return out;
     }
-    out.slope = rain_wind_slopes(look, p.xz + rain_surface.eye.xz, rain_surface.eye.w) * room;
+    out.slope = rain_wind_slopes(look, p.xz, rain_surface.eye.w) * room;
     if (look.ripples.w > 0.5) {
         let ring = textureSampleGrad(rain_ripple_map, rain_sampler, p.xz * look.ripples.x + look.ripples.yz,
             ddx * look.ripples.x, ddy * look.ripples.x);
@@ -118,7 +119,7 @@ fn placed_water(paint: vec4<f32>, height: f32, p: vec2<f32>) -> Placed {
         out.depth = water * wetting.paint.w;
     }
     if (wetting.noise_flags.x > 0.5) {
-        let map = rain_puddle_noise(p * wetting.noise.xy, u32(wetting.noise.z));
+        let map = rain_puddle_noise(rain_surface.eye.xz, p, wetting.noise.xy, u32(wetting.noise.z));
         let blended = 1.0 - (1.0 - map) * (1.0 - select(0.0, height, wetting.noise_flags.y > 0.5));
         let level = select(levels.z, wetting.noise.w, wetting.noise.w >= 0.0);
         let amount = max(0.0, level - blended);
@@ -128,13 +129,41 @@ fn placed_water(paint: vec4<f32>, height: f32, p: vec2<f32>) -> Placed {
     return out;
 }
 
+// Beyond this from the origin single precision has steps that show in waves, m.
+const FAR_M: f32 = 4096.0;
+
+// Place of a pixel relative to the eye of the parameters, m. Far from the origin its horizontal part comes from the
+// pixel's own depth, which has no steps; the height has none where the ground lies near 0.
+fn from_anchor(world: vec3<f32>, pixel: vec4<f32>) -> vec3<f32> {
+    let p = world - rain_surface.eye.xyz;
+    if (max(abs(rain_surface.eye.x), abs(rain_surface.eye.z)) < FAR_M) {
+        return p;
+    }
+    let own = direction_view_to_world(position_ndc_to_view(frag_coord_to_ndc(pixel)));
+    let apart = view.world_position - rain_surface.eye.xyz;
+    return vec3<f32>(own.x + apart.x, p.y, own.z + apart.z);
+}
+
+// The mesh's normal, or that of the face where it has none or a broken one.
+fn usable_normal(given: vec3<f32>, world: vec3<f32>, to_eye: vec3<f32>, is_front: bool) -> vec3<f32> {
+    let flat = cross(dpdx(world), dpdy(world));
+    let square = dot(given, given);
+    if (square > 1e-12 && square < 1e12) {
+        return given;
+    }
+    let area = length(flat);
+    let own = select(vec3<f32>(0.0, 1.0, 0.0), flat / area, area > 0.0);
+    return own * select(-1.0, 1.0, dot(own, to_eye) > 0.0) * select(-1.0, 1.0, is_front);
+}
+
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
     var input = in;
     let cover = rain_surface.cover;
-    let p = in.world_position.xyz - rain_surface.eye.xyz;
-    let face = normalize(in.world_normal) * select(-1.0, 1.0, is_front);
-    let to_eye = normalize(view.world_position - in.world_position.xyz);
+    let p = from_anchor(in.world_position.xyz, in.position);
+    let to_eye = calculate_view(in.world_position, view.clip_from_view[3].w == 1.0);
+    input.world_normal = usable_normal(in.world_normal, in.world_position.xyz, to_eye, is_front);
+    let face = normalize(input.world_normal) * select(-1.0, 1.0, is_front);
 
     // Standing water bends the view of its bottom.
     let level = smoothstep(0.85, 0.95, face.y);
@@ -156,7 +185,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         height = 1.0 - textureSample(depth_map_texture, depth_map_sampler, in.uv).r;
     }
 #endif
-    let placed = placed_water(paint, height, p.xz + rain_surface.eye.xz);
+    let placed = placed_water(paint, height, p.xz);
     depth = max(depth, placed.depth);
     let ddx = dpdx(p.xz);
     let ddy = dpdy(p.xz);
@@ -233,14 +262,24 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 }
 
 #ifndef PREPASS_PIPELINE
-// Exposed radiance of the mirrored view that the surface at `p` shows, and how much of its mirror image that is.
+// Exposed radiance of this view's mirror image that the surface at `p` shows, and how much of its mirror image that is.
 fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughness: f32, film: f32) -> vec4<f32> {
-    let reflection = rain_surface.reflection;
+    // The mirror of this view's eye.
+    var layer = 0;
+    for (; layer < 4; layer++) {
+        let eye = rain_surface.mirrors[layer].eye;
+        if (eye.w > 0.0 && distance(eye.xyz, view.world_position) < 0.01) {
+            break;
+        }
+    }
+    if (layer == 4) {
+        return vec4<f32>(0.0);
+    }
+    let reflection = rain_surface.mirrors[layer];
     // What lies far off the mirror's plane, a high pavement or a step, shows its surroundings' map instead.
     let off = 1.0 - smoothstep(0.2, 0.6, abs(p.y - reflection.plane.x));
     let share = reflection.eye.w * film * (1.0 - smoothstep(0.3, 0.5, roughness)) * smoothstep(0.6, 0.9, normal.y) * off;
-    let own = distance(reflection.eye.xyz, view.world_position) < 0.01;
-    if (share <= 0.0 || !own) {
+    if (share <= 0.0) {
         return vec4<f32>(0.0);
     }
     // The mirror's plane is one height; what is reflected is taken to be as far away as a house across the road.
@@ -267,7 +306,7 @@ fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughne
     for (var i = 0; i < 7; i++) {
         let at = uv + vec2<f32>(0.0, lobe * (f32(i) - 3.0) / 3.0);
         let inside = clamp(at, vec2<f32>(0.002), vec2<f32>(0.998));
-        sum += weights[i] * textureSampleLevel(rain_reflection_map, rain_sampler, inside, level).xyz;
+        sum += weights[i] * textureSampleLevel(rain_reflection_map, rain_sampler, inside, layer, level).xyz;
     }
     return vec4<f32>(sum, shown);
 }
