@@ -119,6 +119,10 @@ struct WaterLook {
     ripples: vec4<f32>,
     // Wave tile. x, y: its corner (x, z), z: 1 / side, 1/m, w: 1 when there is one.
     waves: vec4<f32>,
+    // Normal maps of waves. x: 1 / side, 1/m, y, z: the eye's place in the map in sides, w: strength, 0 without maps.
+    map: vec4<f32>,
+    // The second map, likewise; w: share of the light that standing water mirrors, 0..1.
+    more_map: vec4<f32>,
 }
 
 // The mirrored view.

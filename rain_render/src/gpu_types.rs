@@ -90,6 +90,8 @@ pub struct WaterLook {
     pub ambient: [f32; 4],
     pub ripples: [f32; 4],
     pub waves: [f32; 4],
+    pub map: [f32; 4],
+    pub more_map: [f32; 4],
 }
 
 /// The mirrored view.
@@ -187,7 +189,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
-        layout!(WaterLook: absorption, mud, ambient, ripples, waves),
+        layout!(WaterLook: absorption, mud, ambient, ripples, waves, map, more_map),
         layout!(ReflectionParams: clip_from_eye, eye),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, reflection),
         layout!(MaskView: eye_from_clip, screen, surface),

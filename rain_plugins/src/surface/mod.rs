@@ -21,4 +21,7 @@ pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetS
 pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
 pub use reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize};
 pub use state::{SurfaceState, WAVE_PERIOD_S};
-pub use water::{LEVEL_TEXELS, NO_WATER_M, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};
+pub(crate) use water::MapPlace;
+pub use water::{
+    LEVEL_TEXELS, NO_WATER_M, WaterAppearance, WaterImages, WaterLevels, WaveNormalMaps, wind_slope_variance,
+};

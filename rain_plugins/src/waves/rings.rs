@@ -5,7 +5,7 @@ use rain_core::rainfall::DropSizes;
 use rain_ecs::prelude::*;
 use rain_render::waves::RippleTile;
 
-use super::Handover;
+use super::{Handover, WaveWaterSettings};
 use crate::rainfall::RainView;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::surface::{SurfaceState, WaterAppearance, WaterLevels};
@@ -16,6 +16,7 @@ pub struct RainRings {
     tile: RippleTile,
     /// Time up to which it has been advanced. Units: ns.
     now_ns: Option<u64>,
+    off: bool,
     pub(crate) handover: Handover,
 }
 
@@ -24,6 +25,7 @@ impl RainRings {
         Self {
             tile,
             now_ns: None,
+            off: false,
             handover: Handover::default(),
         }
     }
@@ -32,6 +34,11 @@ impl RainRings {
     #[must_use]
     pub fn tile(&self) -> &RippleTile {
         &self.tile
+    }
+
+    /// Whether rings are switched off.
+    pub(crate) fn is_off(&self) -> bool {
+        self.off
     }
 
     /// Forgets all rings: the GPU has lost them.
@@ -55,16 +62,18 @@ pub(super) fn rain_on_water(
     surface: Option<Res<SurfaceState>>,
     levels: Option<Res<WaterLevels>>,
     appearance: Option<Res<WaterAppearance>>,
+    settings: Res<WaveWaterSettings>,
     report: Res<RainReport>,
     views: Query<&Camera, With<RainView>>,
 ) {
     let rings = &mut *rings;
+    rings.off = settings.no_rings;
     rings.handover.wanted = false;
     let now = seen_ns(&clock);
     let seen = views.iter().any(|c| c.is_active);
     let reason = if !seen {
         Some(SkipReason::NoView)
-    } else if appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
+    } else if rings.off || appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
         Some(SkipReason::Disabled)
     } else if !surface.is_some_and(|s| s.wet) {
         Some(SkipReason::Dry)

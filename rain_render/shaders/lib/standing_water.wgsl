@@ -61,6 +61,17 @@ fn rain_under_water(dry: vec3<f32>, look: WaterLook, depth: f32, cos_incidence: 
     return ground + enters * look.mud.xyz * hidden * turbidity / max(loss, vec3<f32>(1e-9));
 }
 
+// What lies aslant (x, z) in a texel of a normal map whose picture's right is x and down is z.
+fn rain_normal_aslant(texel: vec2<f32>) -> vec2<f32> {
+    return (texel * 2.0 - 1.0) * vec2<f32>(1.0, -1.0);
+}
+
+// Slopes of a surface with a detail normal added: r = normalize(n1.xy + n2.xy, n1.z) (UDN), n1 of the slopes, n2 aslant by
+// `detail`.
+fn rain_udn(slope: vec2<f32>, detail: vec2<f32>) -> vec2<f32> {
+    return slope - detail * sqrt(1.0 + dot(slope, slope));
+}
+
 // Slopes (dh/dx, dh/dz) of wind waves at `p` (any origin that stays), `time` in s: five deep-water wave trains within
 // 40 degrees of the wind, each half as long and a third as steep as the one before it.
 fn rain_wind_slopes(look: WaterLook, p: vec2<f32>, time: f32) -> vec2<f32> {
