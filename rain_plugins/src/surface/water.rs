@@ -358,7 +358,7 @@ mod tests {
             let [first, second] = way(Vec2::new(0.3, -0.4), start, start + 0.1);
             assert!((first - DVec2::new(-0.03, 0.04)).length() < 1e-6, "{first}");
             assert!(
-                (second.length() - 0.0355).abs() < 1e-6 && second.perp(first).abs() > 1e-4,
+                (second.length() - 0.0355).abs() < 1e-6 && second.perp_dot(first).abs() > 1e-4,
                 "{second}"
             );
         }

@@ -54,6 +54,10 @@ pub(super) fn seen_ns(clock: &RainClock) -> u64 {
     clock.now_ns() + (f64::from(clock.interpolation()) * clock.tick_ns() as f64) as u64
 }
 
+/// Water that nobody has looked at for so long, and that nothing has moved meanwhile, is calm: e⁻⁹ is left of its waves.
+/// Units: ns.
+pub(super) const FORGOTTEN_NS: u64 = 30_000_000_000;
+
 /// Lets the drops of the present rain fall onto the tile.
 pub(super) fn rain_on_water(
     mut rings: ResMut<RainRings>,
@@ -70,6 +74,10 @@ pub(super) fn rain_on_water(
     rings.off = settings.no_rings;
     rings.handover.wanted = false;
     let now = seen_ns(&clock);
+    let elapsed = rings.now_ns.map_or(u64::MAX, |before| now.saturating_sub(before));
+    if elapsed > FORGOTTEN_NS && !field.is_raining() {
+        rings.tile.reset();
+    }
     let seen = views.iter().any(|c| c.is_active);
     let reason = if !seen {
         Some(SkipReason::NoView)
@@ -90,7 +98,6 @@ pub(super) fn rain_on_water(
     }
     let sizes = DropSizes::from(*field.spectrum());
     rings.tile.set_rain(&sizes);
-    let elapsed = rings.now_ns.map_or(u64::MAX, |before| now.saturating_sub(before));
     rings.now_ns = Some(now);
     rings.tile.advance(elapsed);
     if rings.tile.wants_pass() {

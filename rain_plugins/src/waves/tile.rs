@@ -5,7 +5,7 @@ use rain_ecs::prelude::*;
 use rain_render::waves::{Disturbance, MAX_DISTURBANCES, WaveTile};
 
 use super::disturb::{DisturberMotion, WaterContact, WaterDisturber};
-use super::rings::seen_ns;
+use super::rings::{FORGOTTEN_NS, seen_ns};
 use super::{Handover, WaveWaterSettings};
 use crate::rainfall::RainView;
 use crate::report::{PassName, RainReport, SkipReason};
@@ -88,6 +88,9 @@ pub(super) fn move_water(
     let elapsed = waves.now_ns.map_or(0, |before| now.saturating_sub(before));
     waves.now_ns = Some(now);
     let seconds = elapsed as f32 / 1e9;
+    if elapsed > FORGOTTEN_NS {
+        waves.tile.reset();
+    }
     let found = &mut waves.disturbances;
     found.clear();
     waves.off = settings.no_waves;
