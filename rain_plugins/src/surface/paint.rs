@@ -186,6 +186,34 @@ mod tests {
     use super::*;
 
     #[test]
+    fn depth_grows_with_the_level_and_leans_to_the_low() {
+        let noise = NoisePuddles::default();
+        let places = || (0..400_u16).map(|i| DVec2::new(f64::from(i % 20) * 0.9, f64::from(i / 20) * 1.1 - 7.0));
+        let volume = |noise: NoisePuddles, level: f64, height: f64| -> f64 {
+            let depths: Vec<f64> = places().map(|at| noise.depth_m(at, level, height)).collect();
+            assert!(depths.iter().all(|d| (0.0..=0.01).contains(d)));
+            depths.iter().sum()
+        };
+        assert_eq!(volume(noise, 0.0, 0.0), 0.0);
+        assert!(volume(noise, 0.9, 0.0) > volume(noise, 0.5, 0.0) && volume(noise, 0.5, 0.0) > 0.1);
+        assert!(volume(noise, 0.5, 0.2) < 0.7 * volume(noise, 0.5, 0.0));
+        let alone = NoisePuddles { noise: 0.0, ..noise };
+        let at = |height: f64| alone.depth_m(DVec2::new(3.0, 4.0), 0.7, height);
+        assert!(
+            (at(0.4) - 0.003).abs() < 1e-12 && at(0.8) == 0.0,
+            "{} {}",
+            at(0.4),
+            at(0.8)
+        );
+        let own = NoisePuddles {
+            level: Some(0.9),
+            height_map: false,
+            ..noise
+        };
+        assert!((volume(own, 0.0, 0.7) - volume(noise, f64::from(0.9_f32), 0.0)).abs() < 1e-12);
+    }
+
+    #[test]
     fn each_field_is_checked_and_named() {
         for bad in [f32::NAN, f32::INFINITY, -0.1, 1001.0] {
             let paints = [

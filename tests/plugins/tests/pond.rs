@@ -89,15 +89,23 @@ impl Pond {
         self.test.frames(3, FRAME);
     }
 
-    /// A wall 30 m high behind the hollow that shines in this colour, from x to x.
-    pub fn wall(&mut self, colour: Color, x: [f32; 2]) {
+    /// A wall behind the hollow that shines in this colour, from x to x and from y to y.
+    pub fn wall(&mut self, colour: Color, x: [f32; 2], y: [f32; 2]) {
+        self.shining(colour, Vec3::new(x[0], y[0], -3.4), Vec3::new(x[1], y[1], -3.0));
+    }
+
+    /// A bar along the wall, before it.
+    pub fn bar(&mut self, colour: Color, y: [f32; 2]) {
+        self.shining(colour, Vec3::new(-12.0, y[0], -3.0), Vec3::new(12.0, y[1], -2.9));
+    }
+
+    fn shining(&mut self, colour: Color, low: Vec3, high: Vec3) {
         let world = self.test.world();
         let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
             base_color: colour,
             unlit: true,
             ..default()
         });
-        let (low, high) = (Vec3::new(x[0], -1.0, -3.4), Vec3::new(x[1], 30.0, -3.0));
         let wall = world::block_of(world, "wall", low, high, material);
         world.entity_mut(wall).insert(MovesInRain);
         self.test.frames(3, FRAME);
@@ -127,7 +135,7 @@ impl Pond {
                 self.place(at).is_some_and(|p| holds(depth(p)))
             })
             .collect();
-        assert!(found.len() > 60, "{} pixels", found.len());
+        assert!(found.len() > 20, "{} pixels", found.len());
         found
     }
 }
