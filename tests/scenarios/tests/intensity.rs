@@ -68,30 +68,11 @@ fn heavier_rain_keeps_every_streak_and_another_seed_does_not() {
     assert!(lost(&other) > 1000, "{} pixels with another seed", lost(&other));
 }
 
-/// Of all pixels that streaks touch, the share in pieces that a single streak could be: no wider than a few pixels.
-fn apart(shot: &Shot) -> f64 {
-    let [width, height] = shot.size.map(|n| n as usize);
-    let mut wet: Vec<bool> = shot.pixels().iter().map(|p| p.rain > 0.02).collect();
-    let (mut single, mut all) = (0, 0);
-    for start in 0..wet.len() {
-        let mut piece = Vec::new();
-        let mut open = vec![start];
-        while let Some(i) = open.pop() {
-            if !std::mem::take(&mut wet[i]) {
-                continue;
-            }
-            piece.push(i);
-            let (x, y) = (i % width, i / width);
-            for column in x.saturating_sub(1)..(x + 2).min(width) {
-                open.extend((y.saturating_sub(1)..(y + 2).min(height)).map(|row| row * width + column));
-            }
-        }
-        let columns = piece.iter().map(|i| i % width);
-        let wide = columns.clone().max().unwrap_or(0) - columns.min().unwrap_or(0);
-        all += piece.len();
-        single += if wide <= 5 { piece.len() } else { 0 };
-    }
-    single as f64 / all.max(1) as f64
+/// How far single streaks stand out from the rain around them: the spread of the coverage over its mean.
+fn standing_out(shot: &Shot) -> f64 {
+    let pixels = shot.pixels();
+    let middle = mean(&pixels, |p| p.rain);
+    mean(&pixels, |p| (p.rain - middle).powi(2)).sqrt() / middle
 }
 
 #[test]
@@ -99,10 +80,10 @@ fn single_streaks_are_told_apart_in_light_rain_and_not_in_heavy_rain() {
     if !gpu::available() {
         return;
     }
-    let [light, moderate, heavy] = [1.0, 5.0, 50.0].map(|intensity| apart(&shoot(intensity, 1).0));
-    assert!(light > 0.8, "light {light}, moderate {moderate}, heavy {heavy}");
+    let [light, moderate, heavy] = [1.0, 5.0, 50.0].map(|intensity| standing_out(&shoot(intensity, 1).0));
+    assert!(light > 0.5, "light {light}, moderate {moderate}, heavy {heavy}");
     assert!(
-        moderate < light && heavy < 0.5 * light,
+        moderate < 0.7 * light && heavy < 0.25 * light,
         "light {light}, moderate {moderate}, heavy {heavy}"
     );
 }
