@@ -61,7 +61,7 @@ pub mod prelude {
         surface_class_of_name,
     };
     pub use crate::weather::{
-        ActiveWeather, ArtistControls, Weather, WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState,
+        ActiveWeather, ArtistControls, WaterByHand, Weather, WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState,
         WeatherTimeline,
     };
     pub use rain_core::rainfall::Distribution;

@@ -68,9 +68,10 @@ impl RainQueries<'_, '_> {
         }
         let ground = self.surface.as_ref().and_then(|surface| surface.ground());
         if let Some(ground) = ground {
-            let water = ground.water_at(place);
+            let level = self.weather().and_then(|weather| weather.by_hand().water_level);
+            let water = level.map_or_else(|| ground.water_at(place), |level| ground.water_at_filled(place, level));
             if water.layer != GroundLayer::Neither {
-                return water;
+                return self.with_hand(water, place);
             }
         }
         match self.weather() {
@@ -80,6 +81,24 @@ impl RainQueries<'_, '_> {
                 ..WaterAt::default()
             },
             _ => WaterAt::default(),
+        }
+    }
+
+    /// The water of a surface with what is set by hand: where the rain reaches it, as the picture has it.
+    fn with_hand(&self, water: WaterAt, place: DVec3) -> WaterAt {
+        let Some(weather) = self.weather().filter(|weather| weather.by_hand().is_set()) else {
+            return water;
+        };
+        let exposure = f64::from(self.exposed_at(place));
+        let by_hand = weather.by_hand();
+        WaterAt {
+            saturation: by_hand.wetness.map_or(water.saturation, |wetness| wetness * exposure),
+            film_mm: match by_hand.water_level {
+                Some(_) if water.puddle_m > 0.0 => 0.0,
+                Some(_) => weather.water_level_mm(water.class) * exposure,
+                None => water.film_mm,
+            },
+            ..water
         }
     }
 

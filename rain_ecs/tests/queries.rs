@@ -1,6 +1,7 @@
 //! What gameplay asks.
 
 use bevy_app::App;
+use bevy_ecs::message::Messages;
 use bevy_ecs::system::RunSystemOnce;
 use bevy_math::{DVec3, Vec3};
 use rain_core::wheels::Tyre;
@@ -109,4 +110,78 @@ fn questions_need_nothing_but_a_world() {
         )
     });
     assert_eq!(answers, (0.0, 0.0, 1.0, 0.85, 1e9));
+}
+
+#[test]
+fn wetness_and_level_set_by_hand_are_answered_and_the_water_is_there_again_afterwards() {
+    let mut app = app(RainClock::default());
+    add_street(&mut app);
+    let weather = app.world_mut().spawn(Weather::rain(0.0)).id();
+    run(&mut app, 10);
+    let on = |x: f64, z: f64| DVec3::new(x, street_height(x, z), z);
+    let (bowl, slope, shelter) = (on(8.1, 4.1), on(3.1, 4.1), on(14.1, 2.6));
+    let places = [bowl, slope, shelter];
+    let answers = |app: &mut App| {
+        (
+            ask(app, move |q| places.map(|p| q.wetness_at(p))),
+            ask(app, move |q| places.map(|p| q.water_depth_at(p))),
+        )
+    };
+    let hash = |app: &App| state_hash(app.world());
+    let dry = hash(&app);
+    assert_eq!(answers(&mut app), ([0.0; 3], [0.0; 3]), "dry");
+    let set = |app: &mut App, wetness: Option<f64>, water_level: Option<f64>| {
+        app.world_mut()
+            .entity_mut(weather)
+            .insert(WaterByHand { wetness, water_level });
+        frame(app, SECOND / 16);
+    };
+    set(&mut app, Some(0.6), None);
+    assert_eq!(
+        answers(&mut app),
+        ([0.6, 0.6, 0.0], [0.0; 3]),
+        "wet where rain would reach"
+    );
+    // Puddles rise with the level, the film with it; the hollow alone holds a puddle.
+    let mut last = 0.0;
+    for level in [0.25, 0.5, 1.0] {
+        set(&mut app, Some(0.6), Some(level));
+        let (wetness, depth) = answers(&mut app);
+        assert_eq!(wetness, [1.0, 0.6, 0.0], "{level}");
+        assert!(depth[0] > last + 0.01, "{level}: {depth:?}");
+        assert!((depth[1] - level * 3e-3).abs() < 1e-12 && depth[2] == 0.0, "{depth:?}");
+        last = depth[0];
+    }
+    let state = app.world().get::<WeatherState>(weather).expect("its state").clone();
+    assert_eq!(state.shown_levels().puddles, 1.0);
+    assert!(!state.is_dry_and_settled());
+    assert_eq!(
+        app.world().resource::<SurfaceGround>().ledger().basins_m3,
+        0.0,
+        "no water was made"
+    );
+    // A snapshot holds what is set; damaged values are refused.
+    let saved = RainSnapshot::save(app.world()).expect("saved");
+    set(&mut app, None, None);
+    assert_eq!(answers(&mut app).1, [0.0; 3]);
+    saved.restore(app.world_mut()).expect("restored");
+    assert!(answers(&mut app).1[0] > 0.03);
+    // What is outside its domain is named, and the last good values stay.
+    for (wetness, level) in [
+        (Some(1.1), None),
+        (None, Some(-0.1)),
+        (Some(f64::NAN), None),
+        (None, Some(f64::INFINITY)),
+    ] {
+        set(&mut app, wetness, level);
+        let mut errors = app.world_mut().resource_mut::<Messages<RainConfigError>>();
+        let named: Vec<String> = errors.drain().map(|error| error.error.to_string()).collect();
+        let field = if level.is_some() { "water_level" } else { "wetness" };
+        assert!(named.len() == 1 && named[0].starts_with(field), "{named:?}");
+        assert!(answers(&mut app).1[0] > 0.03, "{wetness:?} {level:?}");
+    }
+    app.world_mut().entity_mut(weather).remove::<WaterByHand>();
+    frame(&mut app, SECOND / 16);
+    assert_eq!(answers(&mut app), ([0.0; 3], [0.0; 3]), "the dry ground is back");
+    assert!(hash(&app) != dry, "time has passed");
 }

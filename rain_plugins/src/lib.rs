@@ -94,9 +94,9 @@ pub mod prelude {
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::surface::{
         Gap, KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, SceneGap, ShowPaint,
-        SurfaceWetting, WaterAppearance,
+        SurfaceWetting, WaterAppearance, WaveNormalMaps,
     };
-    pub use crate::waves::{WaterDisturber, WaveWaterSettings};
+    pub use crate::waves::{WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
         RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
     };

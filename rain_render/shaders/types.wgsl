@@ -121,6 +121,10 @@ struct WaterLook {
     waves: vec4<f32>,
     // x, y: the eye's place in the tile of the wind's waves, in sides; z, w unused.
     place: vec4<f32>,
+    // Normal maps of waves. x: 1 / side, 1/m, y, z: the eye's place in the map in sides, w: strength, 0 without maps.
+    map: vec4<f32>,
+    // The second map, likewise; w: share of the light that standing water mirrors, 0..1.
+    more_map: vec4<f32>,
 }
 
 // A mirrored view, in the layer of the same number.

@@ -93,6 +93,8 @@ pub struct WaterLook {
     pub ripples: [f32; 4],
     pub waves: [f32; 4],
     pub place: [f32; 4],
+    pub map: [f32; 4],
+    pub more_map: [f32; 4],
 }
 
 /// A mirrored view.
@@ -191,7 +193,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
-        layout!(WaterLook: absorption, mud, ambient, ripples, waves, place),
+        layout!(WaterLook: absorption, mud, ambient, ripples, waves, place, map, more_map),
         layout!(ReflectionParams: clip_from_eye, eye, plane),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors),
         layout!(MaskView: eye_from_clip, screen, surface),

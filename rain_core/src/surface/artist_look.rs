@@ -144,6 +144,20 @@ pub fn nguyenova_puddle_amount(water_level: f64, blended: f64) -> f64 {
     (unit(water_level) - unit(blended)).max(0.0)
 }
 
+/// Share under a film of the drenched ground around a puddle (C36, C217; Nakamae et al. 1990: between wet and puddle, by
+/// height): smoothstep(−width, 0, level − blended), less where the level is below the width, so that it starts from
+/// nothing. A width of 0 (or NaN) has no such ground: wet passes straight into puddle (C37).
+/// Error: 1e-15 over the width against the form above; a look, no water balance.
+#[must_use]
+pub fn drenched_share(water_level: f64, blended: f64, width: f64) -> f64 {
+    let (level, width) = (unit(water_level), unit(width));
+    if width <= 0.0 {
+        return 0.0;
+    }
+    let t = unit((level - unit(blended) + width) / width);
+    t * t * (3.0 - 2.0 * t) * unit(level / width)
+}
+
 /// Depth of a puddle amount, at most 10 mm (C48). Units: mm.
 /// Error: 2e-16 relative; a look, no water balance.
 #[must_use]

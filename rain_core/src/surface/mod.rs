@@ -8,6 +8,7 @@
 //! | `green_ampt.rs` | infiltration by a wetting front |
 //! | `grate.rs` | what a gully takes |
 //! | `puddle.rs` | one paraboloid puddle: volume, level, filling and drying |
+//! | `puddle_map.rs` | noise that places puddles at random |
 //! | `surface_state.rs` | dry, wet, drenched, puddle |
 //! | `wet_albedo.rs` | how much darker a soaked body is |
 //! | `wet_roughness.rs` | how smooth a film makes it |
@@ -25,6 +26,7 @@ mod film_step;
 mod grate;
 mod green_ampt;
 mod puddle;
+mod puddle_map;
 mod road_film;
 mod sheet_flow;
 mod surface_state;
@@ -36,6 +38,7 @@ pub use film_step::{drained_film, drained_film_f32, fast_film_step_f32, film_ste
 pub use grate::Grate;
 pub use green_ampt::{GreenAmpt, SoilTexture};
 pub use puddle::ParaboloidPuddle;
+pub use puddle_map::puddle_map;
 pub use road_film::{RoadFilmFit, RoadSurface};
 pub use sheet_flow::{FlowLaw, SheetFlow, recession_share};
 pub use surface_state::{SurfaceState, SurfaceWeights};

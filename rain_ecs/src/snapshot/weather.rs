@@ -5,7 +5,7 @@ use rain_core::weather::{ArtistSettings, Timeline, WeatherConditions};
 use serde::{Deserialize, Serialize};
 
 use super::{Apply, SnapshotError, SnapshotPart};
-use crate::weather::{ActiveWeather, ArtistControls, Weather, WeatherMode, WeatherState, WeatherTimeline};
+use crate::weather::{ActiveWeather, ArtistControls, WaterByHand, Weather, WeatherMode, WeatherState, WeatherTimeline};
 
 /// The weather in force: what the user set and what it has done. It is put on the entity whose weather counts, or on a
 /// new one.
@@ -16,6 +16,8 @@ pub(crate) struct WeatherPart {
     mode: WeatherMode,
     controls: Option<ArtistSettings>,
     timeline: Option<(Timeline, f64)>,
+    #[serde(default)]
+    by_hand: Option<WaterByHand>,
     state: WeatherState,
 }
 
@@ -31,6 +33,8 @@ impl SnapshotPart for WeatherPart {
             mode: *world.get::<WeatherMode>(entity)?,
             controls: world.get::<ArtistControls>(entity).map(|controls| controls.0),
             timeline: timeline.map(|t| (t.timeline.clone(), t.start_s)),
+            // As with the weather, what was refused has had no effect.
+            by_hand: world.get::<WaterByHand>(entity).map(|_| state.by_hand),
             state,
         })
     }
@@ -48,7 +52,12 @@ impl SnapshotPart for WeatherPart {
                 .map(|entity| entity.id())
                 .min_by_key(|entity| (entity.index_u32(), entity.generation().to_bits()))
         });
-        let state = self.state.validated().map_err(|error| refused(error.to_string()))?;
+        let mut state = self.state.validated().map_err(|error| refused(error.to_string()))?;
+        let by_hand = match self.by_hand {
+            Some(by_hand) => Some(by_hand.validated().map_err(|error| refused(error.to_string()))?),
+            None => None,
+        };
+        state.by_hand = by_hand.unwrap_or_default();
         let controls = match self.controls {
             Some(settings) => Some(settings.validated().map_err(|error| refused(error.to_string()))?),
             None => None,
@@ -70,6 +79,10 @@ impl SnapshotPart for WeatherPart {
             match controls {
                 Some(controls) => entity.insert(ArtistControls(controls)),
                 None => entity.remove::<ArtistControls>(),
+            };
+            match by_hand {
+                Some(by_hand) => entity.insert(by_hand),
+                None => entity.remove::<WaterByHand>(),
             };
             match timeline {
                 Some(timeline) => entity.insert(timeline),

@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
+use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::Distribution;
 use rain_core::weather::{ArtistSettings, Timeline, WeatherConditions, WeatherPreset};
 use serde::{Deserialize, Serialize};
@@ -125,3 +126,37 @@ pub enum WeatherMode {
 #[reflect(Component, Debug, Clone, PartialEq, Default)]
 #[require(Weather)]
 pub struct ArtistControls(pub ArtistSettings);
+
+/// Wetness and water level set by hand, in place of what the weather has made of them: what surfaces show and what
+/// [`crate::RainQueries`] answers. The water itself goes on underneath and is there again when this is taken away.
+///
+/// Checked like [`Weather`]: what lies outside its domain is reported, and the last good values stay in force.
+#[derive(Component, Reflect, Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[reflect(Component, Debug, Clone, PartialEq, Default)]
+#[require(Weather)]
+pub struct WaterByHand {
+    /// Wetness of everything that rain reaches: 0 dry, 1 soaked. Units: none. Domain: [0, 1]. `None`: the weather's.
+    pub wetness: Option<f64>,
+    /// How full puddles, holes and the film of open ground are: 0 none, 1 about to spill; the film is then
+    /// [`ArtistSettings::full_level_mm`]. Units: none. Domain: [0, 1]. `None`: the weather's.
+    pub water_level: Option<f64>,
+}
+
+impl WaterByHand {
+    /// These values, if they lie in their domains.
+    ///
+    /// # Errors
+    /// Names the first that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        in_range("wetness", self.wetness.unwrap_or(0.0), 0.0, 1.0, "0 to 1")?;
+        in_range("water_level", self.water_level.unwrap_or(0.0), 0.0, 1.0, "0 to 1")?;
+        Ok(self)
+    }
+
+    /// Whether anything is set.
+    #[must_use]
+    pub fn is_set(&self) -> bool {
+        self.wetness.is_some() || self.water_level.is_some()
+    }
+}

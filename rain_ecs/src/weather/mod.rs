@@ -2,7 +2,7 @@
 //!
 //! | file | concept |
 //! |---|---|
-//! | `components.rs` | [`Weather`], [`WeatherTimeline`], [`WeatherMode`], [`ArtistControls`] |
+//! | `components.rs` | [`Weather`], [`WeatherTimeline`], [`WeatherMode`], [`ArtistControls`], [`WaterByHand`] |
 //! | `state.rs` | [`WeatherState`], the output |
 //! | `systems.rs` | choosing, checking and advancing in [`crate::RainTick`] |
 //!
@@ -16,7 +16,7 @@ mod systems;
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
-pub use components::{ArtistControls, Weather, WeatherMode, WeatherTimeline};
+pub use components::{ArtistControls, WaterByHand, Weather, WeatherMode, WeatherTimeline};
 pub use state::WeatherState;
 pub use systems::{ActiveWeather, WeatherIgnored};
 
@@ -37,6 +37,7 @@ impl Plugin for WeatherPlugin {
             .register_type::<WeatherTimeline>()
             .register_type::<WeatherMode>()
             .register_type::<ArtistControls>()
+            .register_type::<WaterByHand>()
             .register_type::<WeatherState>()
             .snapshot_part::<WeatherPart>("weather")
             .hash_with("weather", |world, hasher| {

@@ -8,7 +8,7 @@ use rain_core::weather::{ArtistState, SurfaceClass, SurfaceColumn, WeatherCondit
 
 use serde::{Deserialize, Serialize};
 
-use super::components::WeatherMode;
+use super::components::{WaterByHand, WeatherMode};
 use crate::state_hash::{HashState, StateHasher};
 
 /// The weather in force and the state of open ground under it, after the last tick. Written by the weather systems
@@ -22,6 +22,9 @@ pub struct WeatherState {
     pub(super) last_good: WeatherConditions,
     pub(super) surfaces: WeatherSurfaces,
     pub(super) mode: WeatherMode,
+    /// Set, not simulated: a snapshot has it with what else the user set.
+    #[serde(skip)]
+    pub(crate) by_hand: WaterByHand,
     pub(super) timeline_refused: bool,
     /// Wetness and water level of each class before the last tick.
     pub(super) before: [[f64; 2]; SurfaceClass::COUNT],
@@ -40,20 +43,32 @@ impl WeatherState {
         self.mode
     }
 
-    /// Wetness of a class, by the mode in force: pore water / capacity, or the artists' wet level.
+    /// What is set by hand, as the last tick took it.
+    #[must_use]
+    pub fn by_hand(&self) -> &WaterByHand {
+        &self.by_hand
+    }
+
+    /// Wetness of a class, as set by hand or by the mode in force: pore water / capacity, or the artists' wet level.
     /// Units: none. Domain: [0, 1].
     #[must_use]
     pub fn wetness(&self, class: SurfaceClass) -> f64 {
+        if let Some(wetness) = self.by_hand.wetness {
+            return wetness;
+        }
         match self.mode {
             WeatherMode::Physical => self.surfaces.wetness(class),
             WeatherMode::Artist => self.surfaces.artist().wetness,
         }
     }
 
-    /// Mean film of a class outside basins, by the mode in force: water on the surface, or the artists' puddle level
-    /// times the depth it stands for. Units: mm.
+    /// Mean film of a class outside basins, as set by hand or by the mode in force: water on the surface, or the artists'
+    /// puddle level times the depth it stands for. Units: mm.
     #[must_use]
     pub fn water_level_mm(&self, class: SurfaceClass) -> f64 {
+        if let Some(level) = self.by_hand.water_level {
+            return level * self.surfaces.artist_settings().full_level_mm;
+        }
         match self.mode {
             WeatherMode::Physical => self.surfaces.water_level_mm(class),
             WeatherMode::Artist => self.surfaces.artist().puddles * self.surfaces.artist_settings().full_level_mm,
@@ -84,10 +99,20 @@ impl WeatherState {
         &self.surfaces
     }
 
-    /// The artists' levels.
+    /// The artists' levels, as the weather drives them.
     #[must_use]
     pub fn artist(&self) -> &ArtistState {
         self.surfaces.artist()
+    }
+
+    /// The artists' levels that are shown: what is set by hand over what the weather drives.
+    #[must_use]
+    pub fn shown_levels(&self) -> ArtistState {
+        let mut levels = *self.surfaces.artist();
+        levels.wetness = self.by_hand.wetness.unwrap_or(levels.wetness);
+        levels.holes = self.by_hand.water_level.unwrap_or(levels.holes);
+        levels.puddles = self.by_hand.water_level.unwrap_or(levels.puddles);
+        levels
     }
 
     /// Penman's potential evaporation, negative for dew (which wets nothing). Units: mm/h.
@@ -102,10 +127,14 @@ impl WeatherState {
         self.surfaces.rain_mm()
     }
 
-    /// Whether it does not rain and nothing is wet, by the mode in force: what lets a scene skip all rain work.
+    /// Whether it does not rain and nothing is wet, by the mode in force and by hand: what lets a scene skip all rain
+    /// work.
     #[must_use]
     pub fn is_dry_and_settled(&self) -> bool {
+        let WaterByHand { wetness, water_level } = self.by_hand;
         self.conditions.intensity_mm_h == 0.0
+            && wetness.unwrap_or(0.0) == 0.0
+            && water_level.unwrap_or(0.0) == 0.0
             && match self.mode {
                 WeatherMode::Physical => self.surfaces.ground_is_dry(),
                 WeatherMode::Artist => self.surfaces.artist().is_dry(),
@@ -155,6 +184,11 @@ impl HashState for WeatherState {
             hasher.u64(c.distribution as u64);
         }
         hasher.u64(self.mode as u64);
+        if self.by_hand.is_set() {
+            for value in [self.by_hand.wetness, self.by_hand.water_level] {
+                hasher.f64(value.unwrap_or(-1.0));
+            }
+        }
         self.surfaces.for_each_state_bits(|bits| hasher.u64(bits));
     }
 }

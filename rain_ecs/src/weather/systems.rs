@@ -4,7 +4,7 @@ use bevy_ecs::change_detection::DetectChanges;
 use bevy_ecs::prelude::*;
 use rain_core::weather::ArtistSettings;
 
-use super::components::{ArtistControls, Weather, WeatherMode, WeatherTimeline};
+use super::components::{ArtistControls, WaterByHand, Weather, WeatherMode, WeatherTimeline};
 use super::state::WeatherState;
 use crate::clock::RainClock;
 use crate::error::RainConfigError;
@@ -78,11 +78,12 @@ pub(super) fn check_weather(
         &mut WeatherState,
         Option<Ref<WeatherTimeline>>,
         Option<Ref<ArtistControls>>,
+        Option<Ref<WaterByHand>>,
     )>,
     mut errors: MessageWriter<RainConfigError>,
 ) {
     let Some(entity) = active.entity() else { return };
-    let Ok((weather, &mode, mut state, timeline, controls)) = weathers.get_mut(entity) else {
+    let Ok((weather, &mode, mut state, timeline, controls, by_hand)) = weathers.get_mut(entity) else {
         return;
     };
     let state = &mut *state;
@@ -111,6 +112,16 @@ pub(super) fn check_weather(
     };
     if let Some(error) = refused {
         errors.write(RainConfigError { entity, error });
+    }
+    match by_hand {
+        Some(by_hand) if fresh || by_hand.is_changed() => match by_hand.validated() {
+            Ok(by_hand) => state.by_hand = by_hand,
+            Err(error) => {
+                errors.write(RainConfigError { entity, error });
+            }
+        },
+        Some(_) => {}
+        None => state.by_hand = WaterByHand::default(),
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use bevy::asset::AssetId;
 use bevy::image::Image;
 use bevy::light::{DirectionalLight, EnvironmentMapLight, GlobalAmbientLight};
-use bevy::math::{DVec2, Vec3, Vec4};
+use bevy::math::{DVec2, Vec2, Vec3, Vec4};
 use bevy::prelude::*;
 use bevy::render::storage::ShaderBuffer;
 use bevy::render::sync_world::RenderEntity;
@@ -20,7 +20,8 @@ use super::RainMasks;
 use crate::cover::CoverMap;
 use crate::rainfall::{RainViewFrame, ViewMotion};
 use crate::surface::{
-    GroundFilms, MirrorFrame, SurfaceState, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance,
+    GroundFilms, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages, WaterLevels, WaveNormalMaps,
+    wind_slope_variance,
 };
 use crate::waves::{Handover, PuddleWaves, RainRings};
 
@@ -68,6 +69,8 @@ pub(super) struct ExtractedSurface {
     pub artist: Vec4,
     pub time_s: f32,
     pub water: WaterLook,
+    /// Where the normal maps of waves lie.
+    pub maps: Option<[MapPlace; 2]>,
     pub images: Option<ExtractedWaterImages>,
     pub levels: Option<WaterLevels>,
     pub films: GroundFilms,
@@ -116,7 +119,8 @@ pub(super) fn extract_waves(mut main: ResMut<MainWorld>, mut extracted: ResMut<E
             rings.lose();
         } else {
             std::mem::swap(&mut rings.handover, &mut extracted.ripples);
-            extracted.ripple_side_m = rings.tile().settings().side_m;
+            let side_m = rings.tile().settings().side_m;
+            extracted.ripple_side_m = if rings.is_off() { 0.0 } else { side_m };
         }
     }
     if let Some(mut waves) = main.get_resource_mut::<PuddleWaves>() {
@@ -126,18 +130,27 @@ pub(super) fn extract_waves(mut main: ResMut<MainWorld>, mut extracted: ResMut<E
         } else {
             std::mem::swap(&mut waves.handover, &mut extracted.waves);
             let tile = waves.tile();
-            extracted.wave_tile_m = tile.has_water().then(|| (DVec2::from(tile.corner_m()), tile.side_m()));
+            let shown = tile.has_water() && !waves.is_off();
+            extracted.wave_tile_m = shown.then(|| (DVec2::from(tile.corner_m()), tile.side_m()));
         }
     }
 }
 
-/// The material's view of the appearance and of the wind.
-fn water_look(appearance: &WaterAppearance, surface: &SurfaceState) -> WaterLook {
-    let wind = surface.wind_m_s;
-    let velocity = appearance
+/// Velocity of the waves: the app's, or with the wind, or somewhere in calm air. Units: m/s.
+fn wave_velocity(appearance: &WaterAppearance, wind: Vec2) -> Vec2 {
+    appearance
         .wave_velocity_m_s
-        .unwrap_or_else(|| wind.normalize_or_zero() * 0.3);
-    let variance = wind_slope_variance(f64::from(wind.length())) as f32;
+        .unwrap_or_else(|| wind.normalize_or(Vec2::X) * 0.3)
+}
+
+/// The material's view of the appearance and of the wind.
+fn water_look(appearance: &WaterAppearance, surface: &SurfaceState, maps: bool) -> WaterLook {
+    let wind = surface.wind_m_s;
+    let velocity = wave_velocity(appearance, wind);
+    let variance = match appearance.wave_slope {
+        Some(slope) => slope * slope,
+        None => wind_slope_variance(f64::from(wind.length())) as f32,
+    };
     let square = appearance.wave_strength * appearance.wave_strength;
     WaterLook {
         absorption: appearance
@@ -146,7 +159,7 @@ fn water_look(appearance: &WaterAppearance, surface: &SurfaceState) -> WaterLook
             .to_array(),
         mud: appearance.mud_albedo.extend(appearance.turbidity_per_m).to_array(),
         ambient: [
-            variance * square,
+            if maps { 0.0 } else { variance * square },
             1.0 / appearance.wave_length_m,
             velocity.x,
             velocity.y,
@@ -154,6 +167,8 @@ fn water_look(appearance: &WaterAppearance, surface: &SurfaceState) -> WaterLook
         ripples: [0.0; 4],
         waves: [0.0; 4],
         place: [0.0; 4],
+        map: [0.0, 0.0, 0.0, if maps { appearance.wave_strength } else { 0.0 }],
+        more_map: [0.0, 0.0, 0.0, appearance.puddle_reflection],
     }
 }
 
@@ -167,6 +182,7 @@ pub(super) fn extract_rain(
         Option<Res<GroundFilms>>,
         Option<Res<WaterAppearance>>,
         Option<Res<MirrorFrame>>,
+        Option<Res<WaveNormalMaps>>,
     )>,
     ambient: Extract<Option<Res<GlobalAmbientLight>>>,
     suns: Extract<Query<(&DirectionalLight, &GlobalTransform)>>,
@@ -183,7 +199,8 @@ pub(super) fn extract_rain(
     let sun = suns
         .iter()
         .max_by(|(a, _), (b, _)| a.illuminance.total_cmp(&b.illuminance));
-    let (images, levels, films, appearance, mirrors) = &*water;
+    let (images, levels, films, appearance, mirrors, maps) = &*water;
+    let maps = maps.as_ref().filter(|maps| maps.images().is_some());
     // What does not validate has been named in the log.
     let appearance = appearance.as_ref().and_then(|a| a.validated().ok()).unwrap_or_default();
     commands.insert_resource(ExtractedRainScene {
@@ -200,7 +217,8 @@ pub(super) fn extract_rain(
             state: surface.state,
             artist: surface.artist,
             time_s: surface.time_s,
-            water: water_look(&appearance, surface),
+            water: water_look(&appearance, surface, maps.is_some()),
+            maps: maps.map(|maps| maps.places(wave_velocity(&appearance, surface.wind_m_s), surface.seconds)),
             images: images.as_ref().map(|i| ExtractedWaterImages {
                 levels: i.levels.id(),
                 films: i.films.id(),

@@ -190,6 +190,12 @@ fn surface_params(
         let corner = (corner - origin.xz()).as_vec2();
         water.waves = [corner.x, corner.y, (1.0 / side) as f32, 1.0];
     }
+    if let Some(maps) = &surface.maps {
+        for (look, map) in [&mut water.map, &mut water.more_map].into_iter().zip(maps) {
+            let place = (origin.xz() * map.per_m + map.at).fract_gl().as_vec2();
+            look[..3].copy_from_slice(&[map.per_m as f32, place.x, place.y]);
+        }
+    }
     SurfaceParams {
         eye: eye.extend(surface.time_s).to_array(),
         state: surface.state.to_array(),

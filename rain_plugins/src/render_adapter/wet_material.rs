@@ -16,7 +16,7 @@ pub type WetMaterial = ExtendedMaterial<StandardMaterial, WetSurface>;
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
 pub struct WetSurface {
     /// x: strength 0…1; y: porosity 0…1, below 0: guessed from roughness and metalness; z: 1 when the mesh's tag holds
-    /// a wetness of its own.
+    /// a wetness of its own; w: wetness set by hand, below 0: none.
     #[uniform(100)]
     pub wetting: Vec4,
     /// Painted puddles: source (0 none, 1 vertex colours, 2 texture), margin, least flood level, depth m.
@@ -28,7 +28,7 @@ pub struct WetSurface {
     /// Noise puddles: 1 / size along x and z, seed, level (below 0: the weather's).
     #[uniform(100)]
     pub noise: Vec4,
-    /// Noise puddles: present, height map; z, w unused.
+    /// Noise puddles: present, height map, width of the drenched ground, share of the noise.
     #[uniform(100)]
     pub noise_flags: Vec4,
     /// The cover map.
@@ -56,6 +56,12 @@ pub struct WetSurface {
     /// Films and pores of the ground.
     #[texture(109)]
     pub films: Handle<Image>,
+    /// Normal maps of waves, where there are any.
+    #[texture(114)]
+    pub wave_normals: Option<Handle<Image>>,
+    /// The second of them.
+    #[texture(115)]
+    pub more_wave_normals: Option<Handle<Image>>,
 }
 
 impl MaterialExtension for WetSurface {

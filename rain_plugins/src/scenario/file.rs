@@ -26,6 +26,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 pub use super::captures::{Captures, RunUp};
 use super::expectation::Expectation;
 use super::weather::Weather;
+use crate::surface::WaterAppearance;
 
 /// A point or vector: x, y (up), z. Units: metres, or m/s for velocities.
 pub type Vector = [f64; 3];
@@ -58,6 +59,8 @@ pub struct Scenario {
     pub camera: Camera,
     /// How rain is drawn.
     pub rain: RainSettings,
+    /// How standing water looks and moves.
+    pub water: WaterSettings,
     /// When pictures are taken. Default: none.
     pub captures: Captures,
     /// Captures before which the view is drawn for a while. Domain: each capture at most once. Default: none.
@@ -89,6 +92,7 @@ impl Default for Scenario {
             vehicles: Vec::new(),
             camera: Camera::default(),
             rain: RainSettings::default(),
+            water: WaterSettings::default(),
             captures: Captures::default(),
             run_ups: Vec::new(),
             outputs: Outputs::default(),
@@ -441,6 +445,73 @@ impl Default for RainSettings {
             streak_budget: 30_000,
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
+        }
+    }
+}
+
+/// How standing water looks and moves. Nothing here changes wetness or the water ledger. Units, domains and defaults: those
+/// of [`WaterAppearance`](crate::surface::WaterAppearance) unless stated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct WaterSettings {
+    /// Absorption of red, green and blue. Units: 1/m.
+    pub absorption_per_m: [f32; 3],
+    /// Albedo of its mud.
+    pub mud_albedo: [f32; 3],
+    /// Light lost to scattering by mud. Units: 1/m.
+    pub turbidity_per_m: f32,
+    /// Multiple of the wind's waves.
+    pub wave_strength: f32,
+    /// Root mean square slope of the waves. Default: by the wind.
+    pub wave_slope: Option<f32>,
+    /// Length of the longest waves. Units: m.
+    pub wave_length_m: f32,
+    /// Velocity of the waves along x and z. Units: m/s. Default: with the wind, at 0.3 m/s.
+    pub wave_velocity_m_s: Option<[f32; 2]>,
+    /// Multiple of the rings that drops make.
+    pub ripple_strength: f32,
+    /// Share of the mirrored view in reflections.
+    pub reflection_strength: f32,
+    /// Share of the light that standing water mirrors.
+    pub puddle_reflection: f32,
+    /// Whether wheels make waves in puddles. Default: true.
+    pub simulation: bool,
+}
+
+impl Default for WaterSettings {
+    fn default() -> Self {
+        let look = WaterAppearance::default();
+        Self {
+            absorption_per_m: look.absorption_per_m.to_array(),
+            mud_albedo: look.mud_albedo.to_array(),
+            turbidity_per_m: look.turbidity_per_m,
+            wave_strength: look.wave_strength,
+            wave_slope: look.wave_slope,
+            wave_length_m: look.wave_length_m,
+            wave_velocity_m_s: look.wave_velocity_m_s.map(|v| v.to_array()),
+            ripple_strength: look.ripple_strength,
+            reflection_strength: look.reflection_strength,
+            puddle_reflection: look.puddle_reflection,
+            simulation: true,
+        }
+    }
+}
+
+impl WaterSettings {
+    /// The plugin's settings of the same values, not yet checked.
+    #[must_use]
+    pub fn appearance(&self) -> WaterAppearance {
+        WaterAppearance {
+            absorption_per_m: self.absorption_per_m.into(),
+            mud_albedo: self.mud_albedo.into(),
+            turbidity_per_m: self.turbidity_per_m,
+            wave_strength: self.wave_strength,
+            wave_slope: self.wave_slope,
+            wave_length_m: self.wave_length_m,
+            wave_velocity_m_s: self.wave_velocity_m_s.map(Into::into),
+            ripple_strength: self.ripple_strength,
+            reflection_strength: self.reflection_strength,
+            puddle_reflection: self.puddle_reflection,
         }
     }
 }

@@ -42,6 +42,15 @@ Scenario(
         transition: linear,
         base: (pressure_pa: 99000),
         mode: Artist,
+        wetness: 0.75,
+        water_level: 0.25,
+    ),
+    water: (
+        wave_strength: 0.5,
+        wave_slope: 0.0625,
+        wave_velocity_m_s: (0.25, -0.5),
+        puddle_reflection: 0.875,
+        simulation: false,
     ),
     vehicles: [
         (
@@ -106,6 +115,14 @@ fn a_full_scenario_is_read() {
         (s.weather.mode, s.weather.transition),
         (WeatherMode::Artist, Transition::Linear)
     );
+    assert_eq!((s.weather.wetness, s.weather.water_level), (Some(0.75), Some(0.25)));
+    let look = s.water.appearance();
+    assert_eq!(
+        (look.wave_strength, look.wave_slope, look.puddle_reflection),
+        (0.5, Some(0.0625), 0.875)
+    );
+    assert_eq!(look.wave_velocity_m_s, Some(bevy::math::Vec2::new(0.25, -0.5)));
+    assert!(!s.water.simulation && look.ripple_strength == 1.0);
     let timeline = core_timeline(&s).unwrap();
     let keys = timeline.keys();
     assert_eq!(keys.len(), 3);
@@ -246,6 +263,15 @@ fn values_out_of_domain_name_the_field() {
             "zenith_luminance_cd_m2: inf",
             "environment.sky.zenith_luminance_cd_m2",
             "cd/m²",
+        ),
+        ("wetness: 0.75", "wetness: 1.5", "weather.wetness", "0 to 1"),
+        ("water_level: 0.25", "water_level: NaN", "weather.water_level", "0 to 1"),
+        ("wave_slope: 0.0625", "wave_slope: 0.75", "water.wave_slope", "0 to 0.5"),
+        (
+            "puddle_reflection: 0.875",
+            "puddle_reflection: -1",
+            "water.puddle_reflection",
+            "0 to 1",
         ),
         ("(0.9, 0.95, 1.1)", "(0, 0, 0)", "environment.sky.tint", "not all 0"),
         ("(0.2, -1, 0)", "(0, 0, 0)", "environment.sun.direction", "not zero"),

@@ -27,7 +27,7 @@ use super::sky::{Cube, Handedness, SkyModel, generate};
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
 use crate::surface::{KeepDry, MovesInRain, PlanarReflection, WaterLevels};
-use crate::waves::WaterDisturber;
+use crate::waves::{WaterDisturber, WaveWaterSettings};
 
 /// Where the pictures come from.
 #[derive(Resource, Clone)]
@@ -496,12 +496,23 @@ pub(super) fn weather(app: &mut App, scenario: &Scenario) -> Result<(), RunError
             }),
         })
         .collect();
-    app.world_mut().spawn((
+    let by_hand = WaterByHand {
+        wetness: scenario.weather.wetness,
+        water_level: scenario.weather.water_level,
+    };
+    let mut weather = app.world_mut().spawn((
         Name::new("weather"),
         Weather::default(),
         WeatherTimeline::new(timeline),
         mode,
     ));
+    if by_hand.is_set() {
+        weather.insert(by_hand);
+    }
+    app.insert_resource(scenario.water.appearance());
+    if let Some(mut settings) = app.world_mut().get_resource_mut::<WaveWaterSettings>() {
+        settings.no_waves = !scenario.water.simulation;
+    }
     Ok(())
 }
 

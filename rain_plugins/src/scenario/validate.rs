@@ -133,6 +133,9 @@ impl Scenario {
         }
         number("rain.contrast", self.rain.contrast, 1.0, 32.0, "")?;
         number("rain.exposure_s", self.rain.exposure_s, 5e-4, 0.25, "s")?;
+        if let Err(ConfigError::OutOfRange { field, value, allowed }) = self.water.appearance().validated() {
+            return problem(format!("water.{field}"), value, allowed);
+        }
         self.check_captures()?;
         self.check_run_ups()?;
         self.check_outputs()?;
@@ -166,6 +169,8 @@ impl Scenario {
         if let Err(ConfigError::OutOfRange { field, value, allowed }) = weather.base.validated() {
             return problem(format!("weather.base.{field}"), value, allowed);
         }
+        number("weather.wetness", weather.wetness.unwrap_or(0.0), 0.0, 1.0, "")?;
+        number("weather.water_level", weather.water_level.unwrap_or(0.0), 0.0, 1.0, "")?;
         for (i, key) in weather.keys.iter().enumerate() {
             key.check(i.checked_sub(1).map(|i| &weather.keys[i]), &weather.base)
                 .or_else(|(name, value, allowed)| problem(format!("weather.keys[{i}].{name}"), value, allowed))?;

@@ -31,6 +31,10 @@ pub struct Weather {
     pub transition: Transition,
     /// Which model turns rain into wetness and water. Default: `Physical`.
     pub mode: WeatherMode,
+    /// Wetness set by hand, in place of the weather's. Units: none. Domain: [0, 1]. Default: none.
+    pub wetness: Option<f64>,
+    /// How full puddles are, set by hand, in place of the weather's. Units: none. Domain: [0, 1]. Default: none.
+    pub water_level: Option<f64>,
 }
 
 /// Which model turns rain into wetness and water levels.

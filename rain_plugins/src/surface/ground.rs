@@ -45,7 +45,8 @@ fn film_share(film_mm: f32, texture_mm: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Shows the ground's films and pores when they have changed; in the physical way only, which is the ground's.
+/// Shows the ground's films and pores when they have changed; in the physical way only, which is the ground's, and where
+/// nothing is set by hand.
 pub(super) fn follow_films(
     mut films: ResMut<GroundFilms>,
     mut scratch: Local<[Vec<f32>; 2]>,
@@ -56,7 +57,8 @@ pub(super) fn follow_films(
     ground: Option<Res<SurfaceGround>>,
 ) {
     let source = ground.as_ref().and_then(|g| Some((g.ground()?, shown.shown?)));
-    let Some((ground, (builds, _, first))) = source.filter(|_| surface.artist.w < 0.5) else {
+    let shown_as_it_is = surface.artist.w < 0.5 && !surface.by_hand.is_set();
+    let Some((ground, (builds, _, first))) = source.filter(|_| shown_as_it_is) else {
         if films.shown.take().is_some() {
             films.texels = Arc::default();
             films.version += 1;
@@ -111,7 +113,7 @@ fn window(cells: u32, eye: f64) -> (u32, u32) {
     (first / SNAP * SNAP, LEVEL_TEXELS)
 }
 
-/// Shows the ground's puddles when their levels have changed.
+/// Shows the ground's puddles when their levels, or the level set by hand, have changed.
 pub(super) fn follow_ground(
     mut levels: ResMut<WaterLevels>,
     mut shown: ResMut<LevelsFromGround>,
@@ -144,14 +146,20 @@ pub(super) fn follow_ground(
             let height = (ground.base_height_m() + f64::from(height)) as f32;
             height.is_finite().then_some(height)
         });
-    let now = (builds, ground.level_version(), first);
+    let by_hand = surface.by_hand.water_level;
+    // No version counts that far.
+    let version = by_hand.map_or_else(|| ground.level_version(), |share| !share.to_bits());
+    let now = (builds, version, first);
     if shown.shown == Some(now) {
         return;
     }
     let same_place = shown.shown.is_some_and(|(b, _, f)| (b, f) == (builds, first));
     shown.shown = Some(now);
     all.resize(nx * nz, NO_WATER_M);
-    ground.levels(&mut all);
+    match by_hand {
+        Some(share) => ground.levels_filled(share, &mut all),
+        None => ground.levels(&mut all),
+    }
     let cut = |values: &[f32]| -> Vec<f32> {
         let row = |z: usize| {
             let start = (first_z as usize + z) * nx + first_x as usize;

@@ -13,7 +13,7 @@ use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirrors};
 use super::state::{SurfaceState, create_state, follow_weather};
-use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels};
+use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels, WaveNormalMaps};
 use crate::cover::CoverMap;
 use crate::render_adapter::{
     RenderApp, WetMaterial, WetSurface, film_image, level_image, reflection_image, slope_image,
@@ -33,6 +33,9 @@ pub struct SurfaceWetting {
     pub strength: f32,
     /// Share of the body that darkens when soaked. Domain: [0, 1]. `None`: from roughness and metalness.
     pub porosity: Option<f32>,
+    /// Wetness of the pores set by hand, whatever the weather and the cover; films and puddles stay the weather's.
+    /// Domain: [0, 1]. `None`: the weather's.
+    pub wetness: Option<f32>,
 }
 
 impl Default for SurfaceWetting {
@@ -40,18 +43,24 @@ impl Default for SurfaceWetting {
         Self {
             strength: 1.0,
             porosity: None,
+            wetness: None,
         }
     }
 }
 
 impl SurfaceWetting {
+    /// Whether a wetness is set by hand that shows without rain.
+    pub(super) fn is_by_hand(&self) -> bool {
+        self.wetness.is_some_and(|wetness| wetness > 0.0)
+    }
+
     fn uniform(self) -> Vec4 {
         let finite = |v: f32, default: f32| if v.is_finite() { v.clamp(0.0, 1.0) } else { default };
         Vec4::new(
             finite(self.strength, 1.0),
             self.porosity.map_or(-1.0, |p| finite(p, 0.5)),
             0.0,
-            0.0,
+            self.wetness.map_or(-1.0, |w| finite(w, 0.0)),
         )
     }
 }
@@ -107,7 +116,9 @@ impl Plugin for WetSurfacePlugin {
             .init_resource::<WetCopies>()
             .init_resource::<MirrorFrame>()
             .init_resource::<ReflectionSize>()
+            .register_type::<WaveNormalMaps>()
             .init_resource::<WaterAppearance>()
+            .init_resource::<WaveNormalMaps>()
             .init_resource::<WaterLevels>()
             .init_resource::<LevelsFromGround>()
             .init_resource::<GroundFilms>()
@@ -117,6 +128,7 @@ impl Plugin for WetSurfacePlugin {
                 (
                     give_own_wetness,
                     check_appearance.run_if(resource_changed::<WaterAppearance>),
+                    follow_wave_maps.run_if(resource_changed::<WaveNormalMaps>),
                     (follow_weather, follow_ground, follow_films, aim_mirrors)
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
@@ -145,6 +157,21 @@ fn check_appearance(appearance: Res<WaterAppearance>) {
     if let Err(error) = appearance.validated() {
         error!("water looks as by default: {error}");
     }
+}
+
+/// All wet materials show the present maps of waves.
+fn follow_wave_maps(maps: Res<WaveNormalMaps>, mut wet: ResMut<Assets<WetMaterial>>) {
+    if let Err(error) = maps.validated() {
+        error!("no normal maps of waves: {error}");
+    }
+    let images = maps.images().map(|images| images.map(Handle::clone));
+    for (_, material) in wet.iter_mut() {
+        [material.extension.wave_normals, material.extension.more_wave_normals] = both(images.as_ref());
+    }
+}
+
+fn both(images: Option<&[Handle<Image>; 2]>) -> [Option<Handle<Image>>; 2] {
+    images.map_or([None, None], |images| images.clone().map(Some))
 }
 
 fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
@@ -198,6 +225,7 @@ fn wet_meshes(
     surface: Res<SurfaceState>,
     map: Res<CoverMap>,
     water: Res<WaterImages>,
+    wave_maps: Res<WaveNormalMaps>,
     originals: Res<Assets<StandardMaterial>>,
     mut wet: ResMut<Assets<WetMaterial>>,
     mut copies: ResMut<WetCopies>,
@@ -211,6 +239,7 @@ fn wet_meshes(
             .insert(MeshMaterial3d(dry.0.clone()))
             .remove::<(MeshMaterial3d<WetMaterial>, DryMaterial)>();
     }
+    let wave_images = wave_maps.images().map(|images| images.map(Handle::clone));
     for mesh in &meshes {
         let id = mesh.material.0.id();
         let Some(original) = originals.get(id) else {
@@ -239,6 +268,7 @@ fn wet_meshes(
             uniform: uniform.map(|v| v.to_array().map(f32::to_bits)),
             painted: painted.as_ref().map(Handle::id),
         };
+        let [wave_normals, more_wave_normals] = both(wave_images.as_ref());
         let copy = copies.0.entry(id).or_default().entry(key).or_insert_with(|| {
             wet.add(WetMaterial {
                 base: original.clone(),
@@ -256,6 +286,8 @@ fn wet_meshes(
                     waves: water.waves.clone(),
                     reflection: water.reflection.clone(),
                     painted,
+                    wave_normals,
+                    more_wave_normals,
                 },
             })
         });

@@ -25,4 +25,7 @@ pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
 pub use reflection::{MirrorFrame, MirrorView, PlanarReflection, RainMirrorView, ReflectionSize};
 pub use state::{SurfaceState, WAVE_PERIOD_S};
 pub(crate) use triangles::{MeshTriangles, triangles_of};
-pub use water::{LEVEL_TEXELS, NO_WATER_M, WaterAppearance, WaterImages, WaterLevels, wind_slope_variance};
+pub(crate) use water::MapPlace;
+pub use water::{
+    LEVEL_TEXELS, NO_WATER_M, WaterAppearance, WaterImages, WaterLevels, WaveNormalMaps, wind_slope_variance,
+};

@@ -1,8 +1,11 @@
 //! The artists' ways to place puddles on their own meshes: painted channels (Lagarde 2013) and a noise map over a
 //! height map (Nguyenova 2021).
 
+use bevy::math::DVec2;
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
+use rain_core::surface::artist_look::{nguyenova_puddle_amount, nguyenova_puddle_depth_mm, screen_blend};
+use rain_core::surface::puddle_map;
 
 /// Where the channels of a [`PuddlePaint`] come from.
 ///
@@ -68,7 +71,8 @@ impl Default for PuddlePaint {
 }
 
 /// Puddles from a noise map in world space, screen-blended with the material's depth map, filled to the artists'
-/// puddle level: amount = max(0, level − blended), at most 10 mm deep.
+/// puddle level: amount = max(0, level − blended), at most 10 mm deep. Around a puddle the ground is drenched: under a
+/// film, without standing water. By its height ground is so wet, drenched or puddle (Nakamae et al. 1990).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default)]
 pub struct NoisePuddles {
@@ -82,6 +86,12 @@ pub struct NoisePuddles {
     pub stretch: f32,
     /// Whether the material's depth map leans puddles into its lower parts.
     pub height_map: bool,
+    /// How much of the noise counts: 0 leaves the material's depth map alone, which fills joints and cracks.
+    /// Domain: [0, 1]. Default: 1.
+    pub noise: f32,
+    /// Height over the level, in shares of the map, up to which the ground around a puddle is drenched; 0: wet ground
+    /// passes straight into puddle. Domain: [0, 1]. Default: 0.1.
+    pub drenched: f32,
 }
 
 impl Default for NoisePuddles {
@@ -92,6 +102,8 @@ impl Default for NoisePuddles {
             level: None,
             stretch: 1.0,
             height_map: true,
+            noise: 1.0,
+            drenched: 0.1,
         }
     }
 }
@@ -130,6 +142,17 @@ impl PuddlePaint {
 }
 
 impl NoisePuddles {
+    /// Depth of the puddle at a world place (x, z) where the artists' puddle level is `puddles` and the material's relief
+    /// has this `height` (0 lowest, 1 highest, 0 without a depth map): what the picture shows. Units: m. In [0, 0.01].
+    #[must_use]
+    pub fn depth_m(&self, place: DVec2, puddles: f64, height: f64) -> f64 {
+        let [x, z] = [f64::from(self.size_m), f64::from(self.size_m * self.stretch)];
+        let map = f64::from(self.noise) * puddle_map(place.x / x, place.y / z, self.seed);
+        let height = if self.height_map { height } else { 0.0 };
+        let level = self.level.map_or(puddles, f64::from);
+        1e-3 * nguyenova_puddle_depth_mm(nguyenova_puddle_amount(level, screen_blend(map, height)))
+    }
+
     /// These puddles, if every field lies in its domain.
     ///
     /// # Errors
@@ -138,6 +161,8 @@ impl NoisePuddles {
         in_range("size_m", f64::from(self.size_m), 0.1, 1000.0, "0.1 to 1000 m")?;
         in_range("level", f64::from(self.level.unwrap_or(0.0)), 0.0, 1.0, "0 to 1")?;
         in_range("stretch", f64::from(self.stretch), 1.0, 100.0, "1 to 100")?;
+        in_range("noise", f64::from(self.noise), 0.0, 1.0, "0 to 1")?;
+        in_range("drenched", f64::from(self.drenched), 0.0, 1.0, "0 to 1")?;
         Ok(self)
     }
 
@@ -151,7 +176,7 @@ impl NoisePuddles {
                 (self.seed & 0xff_ffff) as f32,
                 self.level.unwrap_or(-1.0),
             ),
-            Vec4::new(1.0, f32::from(u8::from(self.height_map)), 0.0, 0.0),
+            Vec4::new(1.0, f32::from(u8::from(self.height_map)), self.drenched, self.noise),
         ]
     }
 }
@@ -159,6 +184,34 @@ impl NoisePuddles {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn depth_grows_with_the_level_and_leans_to_the_low() {
+        let noise = NoisePuddles::default();
+        let places = || (0..400_u16).map(|i| DVec2::new(f64::from(i % 20) * 0.9, f64::from(i / 20) * 1.1 - 7.0));
+        let volume = |noise: NoisePuddles, level: f64, height: f64| -> f64 {
+            let depths: Vec<f64> = places().map(|at| noise.depth_m(at, level, height)).collect();
+            assert!(depths.iter().all(|d| (0.0..=0.01).contains(d)));
+            depths.iter().sum()
+        };
+        assert_eq!(volume(noise, 0.0, 0.0), 0.0);
+        assert!(volume(noise, 0.9, 0.0) > volume(noise, 0.5, 0.0) && volume(noise, 0.5, 0.0) > 0.1);
+        assert!(volume(noise, 0.5, 0.2) < 0.7 * volume(noise, 0.5, 0.0));
+        let alone = NoisePuddles { noise: 0.0, ..noise };
+        let at = |height: f64| alone.depth_m(DVec2::new(3.0, 4.0), 0.7, height);
+        assert!(
+            (at(0.4) - 0.003).abs() < 1e-12 && at(0.8) == 0.0,
+            "{} {}",
+            at(0.4),
+            at(0.8)
+        );
+        let own = NoisePuddles {
+            level: Some(0.9),
+            height_map: false,
+            ..noise
+        };
+        assert!((volume(own, 0.0, 0.7) - volume(noise, f64::from(0.9_f32), 0.0)).abs() < 1e-12);
+    }
 
     #[test]
     fn each_field_is_checked_and_named() {
@@ -209,6 +262,20 @@ mod tests {
                     "stretch",
                     NoisePuddles {
                         stretch: bad,
+                        ..default()
+                    },
+                ),
+                (
+                    "noise",
+                    NoisePuddles {
+                        noise: bad,
+                        ..default()
+                    },
+                ),
+                (
+                    "drenched",
+                    NoisePuddles {
+                        drenched: bad,
                         ..default()
                     },
                 ),

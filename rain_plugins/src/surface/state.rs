@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
+use super::materials::SurfaceWetting;
 use super::paint::PuddlePaint;
 use super::water::WaterLevels;
 use crate::rainfall::{RainView, leading_view};
@@ -21,10 +22,14 @@ pub struct SurfaceState {
     pub state: Vec4,
     /// The artists' wetness, holes and puddles, 0…1; w: 1 when they rule.
     pub artist: Vec4,
+    /// What is set by hand.
+    pub by_hand: WaterByHand,
     /// Where the air goes, horizontally (x, z). Units: m/s.
     pub wind_m_s: Vec2,
     /// Time of the waves: the rain clock's, from 0 to [`WAVE_PERIOD_S`]. Units: s.
     pub time_s: f32,
+    /// The same since the start. Units: s.
+    pub seconds: f64,
     /// World height of the ground under the first view, where it is known. Units: m.
     pub ground_m: Option<f32>,
     /// Origin of the eye-relative positions in the buffer. Units: m, world.
@@ -42,8 +47,10 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
         commands.insert_resource(SurfaceState {
             state: Vec4::ZERO,
             artist: Vec4::ZERO,
+            by_hand: WaterByHand::default(),
             wind_m_s: Vec2::ZERO,
             time_s: 0.0,
+            seconds: 0.0,
             ground_m: None,
             anchor: Vec3::ZERO,
             wet: false,
@@ -60,14 +67,16 @@ pub(super) fn follow_weather(
     weather: Query<&WeatherState>,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
     painted: Query<(), With<PuddlePaint>>,
+    wetted: Query<&SurfaceWetting>,
     levels: Res<WaterLevels>,
 ) {
-    surface.shown = !painted.is_empty();
+    surface.shown = !painted.is_empty() || wetted.iter().any(SurfaceWetting::is_by_hand);
     let eye = leading_view(&views).map(GlobalTransform::translation);
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
     let Some(weather) = state else {
         surface.wet = false;
+        surface.by_hand = WaterByHand::default();
         return;
     };
     // Soils stay damp for days; what is shown is the class below.
@@ -82,7 +91,8 @@ pub(super) fn follow_weather(
         weather.surfaces().properties(CLASS).texture_depth_mm as f32,
         weather.conditions().intensity_mm_h as f32,
     );
-    let artist = weather.artist();
+    let artist = weather.shown_levels();
+    surface.by_hand = *weather.by_hand();
     surface.artist = Vec4::new(
         artist.wetness as f32,
         artist.holes as f32,
@@ -93,4 +103,5 @@ pub(super) fn follow_weather(
     surface.wind_m_s = Vec2::new(wind.x as f32, wind.z as f32);
     let seconds = clock.now_s() + f64::from(clock.interpolation()) * clock.tick_ns() as f64 / 1e9;
     surface.time_s = (seconds % WAVE_PERIOD_S) as f32;
+    surface.seconds = seconds;
 }

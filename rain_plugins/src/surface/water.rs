@@ -19,8 +19,10 @@ pub struct WaterAppearance {
     /// Light lost to scattering by mud: 0 clear, 5 a street's puddle, 40 a muddy road ([`Water::MUDDY`]). Units: 1/m.
     /// Domain: [0, 1e4]. Default: 5.
     pub turbidity_per_m: f32,
-    /// Multiple of the wind's waves. Domain: [0, 4]. Default: 1.
+    /// Multiple of the waves that wind or [`WaveNormalMaps`] make. Domain: [0, 4]. Default: 1.
     pub wave_strength: f32,
+    /// Root mean square slope of the waves; `None`: by the wind, none below 1 m/s. Domain: [0, 0.5].
+    pub wave_slope: Option<f32>,
     /// Length of the longest wind waves on puddles. Units: m. Domain: [0.02, 10]. Default: 0.25.
     pub wave_length_m: f32,
     /// Velocity of the wind waves; `None`: with the wind, at 0.3 m/s. Units: m/s. Domain: [−10, 10].
@@ -29,6 +31,9 @@ pub struct WaterAppearance {
     pub ripple_strength: f32,
     /// Share of the mirrored view in reflections (where a view has one). Domain: [0, 1]. Default: 1.
     pub reflection_strength: f32,
+    /// Share of the light that standing water mirrors of all that it would, sky, lamps and scene: 1 is Fresnel's.
+    /// Domain: [0, 1]. Default: 1.
+    pub puddle_reflection: f32,
 }
 
 impl Default for WaterAppearance {
@@ -38,10 +43,12 @@ impl Default for WaterAppearance {
             mud_albedo: Vec3::new(0.30, 0.22, 0.13),
             turbidity_per_m: 5.0,
             wave_strength: 1.0,
+            wave_slope: None,
             wave_length_m: 0.25,
             wave_velocity_m_s: None,
             ripple_strength: 1.0,
             reflection_strength: 1.0,
+            puddle_reflection: 1.0,
         }
     }
 }
@@ -61,15 +68,86 @@ impl WaterAppearance {
         let velocity = self.wave_velocity_m_s.unwrap_or_default();
         for (name, value, low, high, allowed) in [
             ("wave_strength", self.wave_strength, 0.0, 4.0, "0 to 4"),
+            ("wave_slope", self.wave_slope.unwrap_or(0.0), 0.0, 0.5, "0 to 0.5"),
             ("wave_length_m", self.wave_length_m, 0.02, 10.0, "0.02 to 10 m"),
             ("wave_velocity_m_s", velocity.x, -10.0, 10.0, "-10 to 10 m/s"),
             ("wave_velocity_m_s", velocity.y, -10.0, 10.0, "-10 to 10 m/s"),
             ("ripple_strength", self.ripple_strength, 0.0, 4.0, "0 to 4"),
             ("reflection_strength", self.reflection_strength, 0.0, 1.0, "0 to 1"),
+            ("puddle_reflection", self.puddle_reflection, 0.0, 1.0, "0 to 1"),
         ] {
             in_range(name, f64::from(value), low, high, allowed)?;
         }
         Ok(self)
+    }
+}
+
+/// Two normal maps of waves that run over all standing water, in place of the trains of wind waves: drawn by an artist, or
+/// taken from a photograph. Their strength and velocity are [`WaterAppearance`]'s.
+///
+/// Linear (not sRGB) images that tile; red is the slope along the world's x, green against its z (the picture's up), as in
+/// glTF. The second runs aslant of the first and slower, and is smaller, so that the two together do not repeat in sight.
+/// They are blended with rings and simulated waves by adding up what is aslant in each normal (UDN).
+#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Resource, Default)]
+pub struct WaveNormalMaps {
+    /// The first; without it there are none.
+    pub first: Option<Handle<Image>>,
+    /// The second; `None`: the first once more.
+    pub second: Option<Handle<Image>>,
+    /// Side of the first map on the ground. Units: m. Domain: [0.02, 100]. Default: 1.
+    pub size_m: f32,
+}
+
+impl Default for WaveNormalMaps {
+    fn default() -> Self {
+        Self {
+            first: None,
+            second: None,
+            size_m: 1.0,
+        }
+    }
+}
+
+/// Where a map lies on the ground: 1 / side in 1/m, and its place at the world's origin in sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MapPlace {
+    pub per_m: f64,
+    pub at: DVec2,
+}
+
+impl WaveNormalMaps {
+    /// Side of the second map over that of the first: no simple ratio.
+    const SECOND_SIDE: f64 = 0.618_034;
+    /// Its speed over that of the first.
+    const SECOND_SPEED: f64 = 0.71;
+    /// Its direction from that of the first. Units: rad.
+    const SECOND_TURN: f64 = 0.7;
+
+    /// These maps, if their size lies in its domain.
+    ///
+    /// # Errors
+    /// Names the field.
+    pub fn validated(&self) -> Result<&Self, ConfigError> {
+        in_range("size_m", f64::from(self.size_m), 0.02, 100.0, "0.02 to 100 m")?;
+        Ok(self)
+    }
+
+    /// Both images, where there are maps and they validate.
+    pub(crate) fn images(&self) -> Option<[&Handle<Image>; 2]> {
+        let first = self.first.as_ref().filter(|_| self.validated().is_ok())?;
+        Some([first, self.second.as_ref().unwrap_or(first)])
+    }
+
+    /// Where both maps lie at a time, moved with this velocity of the waves.
+    pub(crate) fn places(&self, velocity_m_s: Vec2, time_s: f64) -> [MapPlace; 2] {
+        let first = f64::from(self.size_m);
+        let velocity = velocity_m_s.as_dvec2();
+        let slower = DVec2::from_angle(Self::SECOND_TURN).rotate(velocity) * Self::SECOND_SPEED;
+        [(first, velocity), (first * Self::SECOND_SIDE, slower)].map(|(side, velocity)| MapPlace {
+            per_m: 1.0 / side,
+            at: (-velocity * time_s / side).rem_euclid(DVec2::ONE),
+        })
     }
 }
 
@@ -248,7 +326,7 @@ mod tests {
     #[test]
     fn each_setting_is_checked_and_named() {
         type Set = fn(&mut WaterAppearance, f32);
-        let fields: [(&str, Set, [f32; 2]); 8] = [
+        let fields: [(&str, Set, [f32; 2]); 10] = [
             ("absorption_per_m", |w, v| w.absorption_per_m.y = v, [-0.1, 2e4]),
             ("mud_albedo", |w, v| w.mud_albedo.z = v, [-0.1, 1.1]),
             ("turbidity_per_m", |w, v| w.turbidity_per_m = v, [-1.0, 2e4]),
@@ -261,6 +339,8 @@ mod tests {
             ),
             ("ripple_strength", |w, v| w.ripple_strength = v, [-0.1, 5.0]),
             ("reflection_strength", |w, v| w.reflection_strength = v, [-0.1, 1.1]),
+            ("wave_slope", |w, v| w.wave_slope = Some(v), [-0.1, 0.6]),
+            ("puddle_reflection", |w, v| w.puddle_reflection = v, [-0.1, 1.1]),
         ];
         assert!(WaterAppearance::default().validated().is_ok());
         for (name, set, [low, high]) in fields {
@@ -270,6 +350,40 @@ mod tests {
                 let message = water.validated().expect_err("invalid").to_string();
                 assert!(message.starts_with(name), "{message}");
             }
+        }
+    }
+
+    #[test]
+    fn normal_maps_run_with_the_waves_for_days_and_a_bad_size_is_none() {
+        let maps = WaveNormalMaps {
+            first: Some(Handle::default()),
+            ..Default::default()
+        };
+        let way = |velocity: Vec2, from: f64, to: f64| {
+            let [a, b] = [from, to].map(|t| maps.places(velocity, t));
+            [0, 1].map(|i| {
+                let moved = b[i].at - a[i].at;
+                (moved - moved.round()) / a[i].per_m
+            })
+        };
+        // A tenth of a second, at the start and after a year.
+        for start in [0.0, 3.2e7] {
+            let [first, second] = way(Vec2::new(0.3, -0.4), start, start + 0.1);
+            assert!((first - DVec2::new(-0.03, 0.04)).length() < 1e-6, "{first}");
+            assert!(
+                (second.length() - 0.0355).abs() < 1e-6 && second.perp_dot(first).abs() > 1e-4,
+                "{second}"
+            );
+        }
+        assert_eq!(way(Vec2::ZERO, 0.0, 9.0), [DVec2::ZERO; 2]);
+        assert!(maps.images().is_some() && WaveNormalMaps::default().images().is_none());
+        for bad in [f32::NAN, f32::INFINITY, 0.0, 101.0] {
+            let maps = WaveNormalMaps {
+                size_m: bad,
+                ..maps.clone()
+            };
+            assert!(maps.validated().expect_err("invalid").to_string().starts_with("size_m"));
+            assert!(maps.images().is_none());
         }
     }
 

@@ -5,10 +5,12 @@ use rain_core::error::{ConfigError, in_range};
 use rain_core::waves::Push;
 use rain_render::waves::Disturbance;
 
+use crate::surface::WaterLevels;
+
 /// Put on a wheel, a foot, a ball: where it moves through a puddle it makes waves along its way.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default)]
-#[require(DisturberMotion)]
+#[require(DisturberMotion, WaterContact)]
 pub struct WaterDisturber {
     /// Width of what touches the water. Units: m. Domain: [0.01, 10]. Default: 0.2, a tyre.
     pub width_m: f32,
@@ -41,33 +43,54 @@ impl WaterDisturber {
     }
 }
 
+/// The water that a [`WaterDisturber`] stands in, looked up once a frame at its lowest point: what decides about waves,
+/// and is to decide about splashes. Written by the plugin alone. A disturber that does not validate touches no water, nor
+/// does any while [`super::WaveWaterSettings::no_waves`] is set.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Default)]
+pub struct WaterContact {
+    /// World height of the water's surface; `None`: the point touches no water. Units: m.
+    pub surface_m: Option<f32>,
+    /// Depth of the water over the ground, the same as the picture shows; 0 where it is not known. Units: m.
+    pub depth_m: f32,
+}
+
+impl WaterContact {
+    /// The one look-up.
+    pub(super) fn under(disturber: &WaterDisturber, at: Vec3, levels: &WaterLevels) -> Self {
+        let (x, z) = (f64::from(at.x), f64::from(at.z));
+        let surface_m = levels.surface_at(x, z).filter(|s| at.y - disturber.radius_m <= *s);
+        Self {
+            surface_m,
+            depth_m: surface_m.map_or(0.0, |_| levels.depth_at(x, z)),
+        }
+    }
+}
+
 /// Where a disturber was in the frame before.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct DisturberMotion {
     before: Option<Vec3>,
+    /// Whether it touched water there.
+    wet: bool,
 }
 
 /// A way longer than this in one frame is a leap, not a motion. Units: m.
 const LEAP_M: f32 = 5.0;
 
 impl DisturberMotion {
-    /// What the disturber did on its way to `at` in `seconds`, if it touched water: `depth_m` tells how deep it is at a
-    /// place (x, z), and how high its surface lies.
+    /// What the disturber did on its way to `at` in `seconds`, if it touched water at either end of it.
     pub(super) fn step(
         &mut self,
         disturber: &WaterDisturber,
         at: Vec3,
         seconds: f32,
-        water: impl Fn(f64, f64) -> Option<f32>,
+        contact: WaterContact,
     ) -> Option<Disturbance> {
+        let touched = std::mem::replace(&mut self.wet, contact.surface_m.is_some());
         let before = self.before.replace(at)?;
         let way = at.distance(before);
-        if !(1e-4..LEAP_M).contains(&way) || seconds <= 0.0 {
-            return None;
-        }
-        let surface =
-            water(f64::from(at.x), f64::from(at.z)).or_else(|| water(f64::from(before.x), f64::from(before.z)))?;
-        if at.y - disturber.radius_m > surface {
+        if !(1e-4..LEAP_M).contains(&way) || seconds <= 0.0 || !(touched || self.wet) {
             return None;
         }
         Some(Disturbance {
@@ -82,17 +105,35 @@ impl DisturberMotion {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::sync::Arc;
 
-    fn pond(x: f64, _z: f64) -> Option<f32> {
-        (x > 0.0).then_some(0.02)
+    use bevy::math::DVec2;
+
+    use super::*;
+    use crate::surface::NO_WATER_M;
+
+    /// A pond of 2 cm over level ground for x > 0.
+    fn pond() -> WaterLevels {
+        let mut levels = WaterLevels {
+            corner_m: DVec2::splat(-100.0),
+            cell_m: 100.0,
+            cells: UVec2::splat(2),
+            ground_m: Arc::new(vec![0.0; 4]),
+            ..default()
+        };
+        levels.set_levels(vec![NO_WATER_M, 0.02, NO_WATER_M, 0.02]);
+        levels
     }
 
     #[test]
     fn only_what_moves_in_water_disturbs_it() {
         let wheel = WaterDisturber::default();
         let mut motion = DisturberMotion::default();
-        let mut step = |x: f32, y: f32| motion.step(&wheel, Vec3::new(x, y, 0.0), 0.02, pond);
+        let pond = pond();
+        let mut step = |x: f32, y: f32| {
+            let at = Vec3::new(x, y, 0.0);
+            motion.step(&wheel, at, 0.02, WaterContact::under(&wheel, at, &pond))
+        };
         assert!(step(1.0, 0.3).is_none(), "nothing is known of its way yet");
         assert!(step(1.0, 0.3).is_none(), "it stands still");
         let moved = step(1.2, 0.3).expect("it moves in the pond");
@@ -101,10 +142,26 @@ mod tests {
             "{moved:?}"
         );
         assert!((moved.to_m[0] - 1.2).abs() < 1e-6 && (moved.width_m - 0.2 / 12.0_f64.sqrt()).abs() < 1e-7);
-        assert!(step(1.3, 0.5).is_none(), "it flies over the water");
+        assert!(step(1.3, 0.5).is_some(), "it lifts off");
+        assert!(step(1.4, 0.5).is_none(), "it flies over the water");
+        assert!(step(1.2, 0.3).is_some(), "it comes down");
         assert!(step(-1.0, 0.3).is_some(), "it came out of the water");
         assert!(step(-1.2, 0.3).is_none(), "dry road");
         assert!(step(50.0, 0.3).is_none(), "a leap is no motion");
+    }
+
+    #[test]
+    fn one_look_up_knows_surface_and_depth() {
+        let (wheel, pond) = (WaterDisturber::default(), pond());
+        let look = |x: f32, y: f32| WaterContact::under(&wheel, Vec3::new(x, y, 1.0), &pond);
+        let wet = look(3.0, 0.3);
+        assert!(
+            wet.surface_m == Some(0.02) && (wet.depth_m - 0.02).abs() < 1e-6,
+            "{wet:?}"
+        );
+        for (x, y) in [(3.0, 0.4), (-3.0, 0.3), (300.0, 0.3), (f32::NAN, 0.3)] {
+            assert_eq!(look(x, y), WaterContact::default(), "{x} {y}");
+        }
     }
 
     #[test]

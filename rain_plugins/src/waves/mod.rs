@@ -6,7 +6,7 @@
 //!
 //! | file | concept |
 //! |---|---|
-//! | `disturb.rs` | [`WaterDisturber`]: what moves the water |
+//! | `disturb.rs` | [`WaterDisturber`]: what moves the water; [`WaterContact`]: the water that it stands in |
 //! | `rings.rs` | the tile of rings |
 //! | `tile.rs` | the tile of puddles |
 
@@ -17,7 +17,7 @@ mod tile;
 use bevy::prelude::*;
 use rain_render::waves::{RippleSettings, RippleTile, WaveFrame, WaveTile, WaveTileSettings};
 
-pub use disturb::WaterDisturber;
+pub use disturb::{WaterContact, WaterDisturber};
 pub use rings::RainRings;
 pub use tile::PuddleWaves;
 
@@ -25,14 +25,19 @@ use crate::render_adapter::RenderApp;
 use crate::schedule::RainViewSystems;
 use crate::surface::WaterLevels;
 
-/// Settings of rings and waves. Changes take effect when the app starts.
-#[derive(Resource, Clone, Copy, Debug, Default)]
+/// Settings of rings and waves. Those of the tiles take effect when the tile is made: when the app starts, or when it is
+/// first switched on; the switches at any time.
+#[derive(Resource, Reflect, Clone, Copy, Debug, Default)]
+#[reflect(Resource, Default)]
 pub struct WaveWaterSettings {
     /// The tile of puddles.
+    #[reflect(ignore)]
     pub waves: WaveTileSettings,
     /// The tile of rings.
+    #[reflect(ignore)]
     pub rings: RippleSettings,
-    /// No interactive waves: wheels and feet leave puddles still.
+    /// No interactive water: wheels and feet leave puddles still, touch no water ([`WaterContact`]), and no step of the
+    /// waves is worked out.
     pub no_waves: bool,
     /// No rings under rain.
     pub no_rings: bool,
@@ -54,11 +59,14 @@ impl Plugin for WavesPlugin {
             return; // nobody sees them on a server
         }
         app.register_type::<WaterDisturber>()
+            .register_type::<WaterContact>()
+            .register_type::<WaveWaterSettings>()
             .init_resource::<WaveWaterSettings>()
             .add_systems(Startup, create_tiles)
             .add_systems(
                 PostUpdate,
                 (
+                    create_tiles.run_if(resource_changed::<WaveWaterSettings>),
                     rings::rain_on_water.run_if(resource_exists::<RainRings>),
                     tile::move_water.run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
                 )
@@ -67,14 +75,19 @@ impl Plugin for WavesPlugin {
     }
 }
 
-fn create_tiles(mut commands: Commands, settings: Res<WaveWaterSettings>) {
-    if !settings.no_rings {
+fn create_tiles(
+    mut commands: Commands,
+    settings: Res<WaveWaterSettings>,
+    rings: Option<Res<RainRings>>,
+    waves: Option<Res<PuddleWaves>>,
+) {
+    if !settings.no_rings && rings.is_none() {
         match RippleTile::new(&settings.rings) {
             Ok(tile) => commands.insert_resource(RainRings::new(tile)),
             Err(error) => error!("no rings on water: {error}"),
         }
     }
-    if !settings.no_waves {
+    if !settings.no_waves && waves.is_none() {
         match WaveTile::new(&settings.waves) {
             Ok(tile) => commands.insert_resource(PuddleWaves::new(tile)),
             Err(error) => error!("no waves on water: {error}"),

@@ -5,7 +5,7 @@ use rain_core::rainfall::DropSizes;
 use rain_ecs::prelude::*;
 use rain_render::waves::RippleTile;
 
-use super::Handover;
+use super::{Handover, WaveWaterSettings};
 use crate::rainfall::RainView;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::surface::{SurfaceState, WaterAppearance, WaterLevels};
@@ -16,6 +16,7 @@ pub struct RainRings {
     tile: RippleTile,
     /// Time up to which it has been advanced. Units: ns.
     now_ns: Option<u64>,
+    off: bool,
     pub(crate) handover: Handover,
 }
 
@@ -24,6 +25,7 @@ impl RainRings {
         Self {
             tile,
             now_ns: None,
+            off: false,
             handover: Handover::default(),
         }
     }
@@ -32,6 +34,11 @@ impl RainRings {
     #[must_use]
     pub fn tile(&self) -> &RippleTile {
         &self.tile
+    }
+
+    /// Whether rings are switched off.
+    pub(crate) fn is_off(&self) -> bool {
+        self.off
     }
 
     /// Forgets all rings: the GPU has lost them.
@@ -47,6 +54,10 @@ pub(super) fn seen_ns(clock: &RainClock) -> u64 {
     clock.now_ns() + (f64::from(clock.interpolation()) * clock.tick_ns() as f64) as u64
 }
 
+/// Water that nobody has looked at for so long, and that nothing has moved meanwhile, is calm: e⁻⁹ is left of its waves.
+/// Units: ns.
+pub(super) const FORGOTTEN_NS: u64 = 30_000_000_000;
+
 /// Lets the drops of the present rain fall onto the tile.
 pub(super) fn rain_on_water(
     mut rings: ResMut<RainRings>,
@@ -55,10 +66,12 @@ pub(super) fn rain_on_water(
     surface: Option<Res<SurfaceState>>,
     levels: Option<Res<WaterLevels>>,
     appearance: Option<Res<WaterAppearance>>,
+    settings: Res<WaveWaterSettings>,
     report: Res<RainReport>,
     views: Query<&Camera, With<RainView>>,
 ) {
     let rings = &mut *rings;
+    rings.off = settings.no_rings;
     rings.handover.wanted = false;
     let now = seen_ns(&clock);
     if rings.now_ns.is_some_and(|before| now < before) {
@@ -66,10 +79,14 @@ pub(super) fn rain_on_water(
         rings.tile.reset();
         rings.now_ns = None;
     }
+    let elapsed = rings.now_ns.map_or(u64::MAX, |before| now.saturating_sub(before));
+    if elapsed > FORGOTTEN_NS && !field.is_raining() {
+        rings.tile.reset();
+    }
     let seen = views.iter().any(|c| c.is_active);
     let reason = if !seen {
         Some(SkipReason::NoView)
-    } else if appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
+    } else if rings.off || appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
         Some(SkipReason::Disabled)
     } else if !surface.is_some_and(|s| s.wet) {
         Some(SkipReason::Dry)
@@ -86,7 +103,6 @@ pub(super) fn rain_on_water(
     }
     let sizes = DropSizes::from(*field.spectrum());
     rings.tile.set_rain(&sizes);
-    let elapsed = rings.now_ns.map_or(u64::MAX, |before| now.saturating_sub(before));
     rings.now_ns = Some(now);
     rings.tile.advance(elapsed);
     if rings.tile.wants_pass() {

@@ -4,9 +4,9 @@ use bevy::prelude::*;
 use rain_ecs::prelude::*;
 use rain_render::waves::{Disturbance, MAX_DISTURBANCES, WaveTile};
 
-use super::Handover;
-use super::disturb::{DisturberMotion, WaterDisturber};
-use super::rings::seen_ns;
+use super::disturb::{DisturberMotion, WaterContact, WaterDisturber};
+use super::rings::{FORGOTTEN_NS, seen_ns};
+use super::{Handover, WaveWaterSettings};
 use crate::rainfall::{RainView, leading_view};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::surface::WaterLevels;
@@ -30,6 +30,7 @@ pub struct PuddleWaves {
     disturbances: Vec<Disturbance>,
     /// Version of the levels whose depths the tile has, and when it took them.
     filled: Option<(u64, u64)>,
+    off: bool,
     pub(crate) handover: Handover,
 }
 
@@ -41,6 +42,7 @@ impl PuddleWaves {
             eye: None,
             disturbances: Vec::new(),
             filled: None,
+            off: false,
             handover: Handover::default(),
         }
     }
@@ -49,6 +51,11 @@ impl PuddleWaves {
     #[must_use]
     pub fn tile(&self) -> &WaveTile {
         &self.tile
+    }
+
+    /// Whether waves are switched off.
+    pub(crate) fn is_off(&self) -> bool {
+        self.off
     }
 
     /// Forgets all waves: the GPU has lost them.
@@ -65,9 +72,15 @@ pub(super) fn move_water(
     mut waves: ResMut<PuddleWaves>,
     clock: Res<RainClock>,
     levels: Res<WaterLevels>,
+    settings: Res<WaveWaterSettings>,
     report: Res<RainReport>,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
-    mut disturbers: Query<(&WaterDisturber, &GlobalTransform, &mut DisturberMotion)>,
+    mut disturbers: Query<(
+        &WaterDisturber,
+        &GlobalTransform,
+        &mut DisturberMotion,
+        &mut WaterContact,
+    )>,
 ) {
     let waves = &mut *waves;
     waves.handover.wanted = false;
@@ -80,14 +93,17 @@ pub(super) fn move_water(
     let elapsed = waves.now_ns.map_or(0, |before| now.saturating_sub(before));
     waves.now_ns = Some(now);
     let seconds = elapsed as f32 / 1e9;
+    if elapsed > FORGOTTEN_NS {
+        waves.tile.reset();
+    }
     let found = &mut waves.disturbances;
     found.clear();
-    let water = |x: f64, z: f64| levels.surface_at(x, z);
-    for (disturber, at, mut motion) in &mut disturbers {
-        if disturber.validated().is_err() {
-            continue;
-        }
-        let disturbance = motion.step(disturber, at.translation(), seconds, water);
+    waves.off = settings.no_waves;
+    for (disturber, at, mut motion, mut contact) in &mut disturbers {
+        let (at, valid) = (at.translation(), disturber.validated().is_ok());
+        let look = (valid && !waves.off).then(|| WaterContact::under(disturber, at, &levels));
+        contact.set_if_neq(look.unwrap_or_default());
+        let disturbance = motion.step(disturber, at, seconds, *contact);
         if found.len() < MAX_DISTURBANCES {
             found.extend(disturbance);
         }
@@ -95,6 +111,7 @@ pub(super) fn move_water(
     let view = leading_view(&views);
     let reason = match view {
         None => Some(SkipReason::NoView),
+        Some(_) if waves.off => Some(SkipReason::Disabled),
         Some(_) if !levels.any_water() => Some(SkipReason::NoWater),
         Some(_) => None,
     };

@@ -10,6 +10,18 @@ fn rain_crack_water(flood: f32, height: f32) -> f32 {
     return min(clamp(flood, 0.0, 1.0), 1.0 - clamp(height, 0.0, 1.0));
 }
 
+// A puddle of noise over a height map: x: amount max(0, level - blended), y: water 0..1, z: film of the drenched ground
+// around it, `drenched` wide in height.
+fn rain_noise_puddle(level: f32, map: f32, height: f32, drenched: f32) -> vec3<f32> {
+    let over = level - (1.0 - (1.0 - map) * (1.0 - height));
+    let amount = max(over, 0.0);
+    var film = 0.0;
+    if (drenched > 0.0) {
+        film = smoothstep(-drenched, 0.0, over) * clamp(level / drenched, 0.0, 1.0);
+    }
+    return vec3<f32>(amount, smoothstep(0.0, 0.08, amount), film);
+}
+
 // Value noise of one octave over the lattice of whole numbers, smooth to the second derivative, 0..1.
 //
 // The place is given by a block of 256 m and the metres from its corner, so that it is as exact anywhere in the world;

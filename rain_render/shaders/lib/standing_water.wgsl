@@ -60,3 +60,14 @@ fn rain_under_water(dry: vec3<f32>, look: WaterLook, depth: f32, cos_incidence: 
     let hidden = 1.0 - exp(-turbidity * depth * (1.0 / refracted + 1.19));
     return ground + enters * look.mud.xyz * hidden * turbidity / max(loss, vec3<f32>(1e-9));
 }
+
+// What lies aslant (x, z) in a texel of a normal map whose picture's right is x and down is z.
+fn rain_normal_aslant(texel: vec2<f32>) -> vec2<f32> {
+    return (texel * 2.0 - 1.0) * vec2<f32>(1.0, -1.0);
+}
+
+// Slopes of a surface with a detail normal added: r = normalize(n1.xy + n2.xy, n1.z) (UDN), n1 of the slopes, n2 aslant by
+// `detail`.
+fn rain_udn(slope: vec2<f32>, detail: vec2<f32>) -> vec2<f32> {
+    return slope - detail * sqrt(1.0 + dot(slope, slope));
+}

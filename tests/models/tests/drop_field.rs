@@ -1,5 +1,7 @@
 //! The drop field: its words, its statistics, and what a view draws of it.
 
+mod moving;
+
 use glam::{DVec3, IVec3, Vec3, Vec4};
 use proptest::prelude::*;
 use rain_core::rainfall::{

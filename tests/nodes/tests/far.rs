@@ -81,7 +81,7 @@ impl Wind {
         let zero = "vec4<f32>(0.0)";
         let place = eye.map(|e| (e / (WIND_TILE * self.length_m)).rem_euclid(1.0) as f32);
         let look = format!(
-            "WaterLook({zero}, {zero}, vec4<f32>({:?}, {:?}, {:?}, {:?}), {zero}, {zero}, vec4<f32>({:?}, {:?}, 0.0, 0.0))",
+            "WaterLook({zero}, {zero}, vec4<f32>({:?}, {:?}, {:?}, {:?}), {zero}, {zero}, vec4<f32>({:?}, {:?}, 0.0, 0.0), {zero}, {zero})",
             self.square as f32,
             (1.0 / self.length_m) as f32,
             self.velocity[0] as f32,

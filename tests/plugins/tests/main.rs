@@ -1,6 +1,7 @@
 //! The plugins inside a Bevy app.
 
 mod bad_meshes;
+mod by_hand;
 mod device_loss;
 mod far_scene;
 mod groups;
@@ -8,6 +9,8 @@ mod large_scene;
 mod materials;
 mod mirrors;
 mod placed_puddles;
+mod pond;
+mod puddle_look;
 mod puddles;
 mod rewind;
 mod scenes;

@@ -61,7 +61,10 @@ fn a_restored_scene_looks_as_it_did_and_no_later_water_stays() {
         "no waves of later"
     );
     let found = difference(&before, &after);
-    assert!(found.mean < 0.02 * changed.mean && found.share == 0.0, "{found:?}, later {changed:?}");
+    assert!(
+        found.mean < 0.02 * changed.mean && found.share == 0.0,
+        "{found:?}, later {changed:?}"
+    );
 
     // It goes on from there as it did.
     test.frames(4, FRAME);

@@ -71,3 +71,41 @@ pub fn puddle_amount(level: f64, blended: f64) -> f64 {
 pub fn puddle([albedo, gloss, f0]: Look, p: f64) -> Look {
     [albedo - 0.2 * p * albedo, gloss + p * (1.0 - gloss), f0]
 }
+
+/// Ground between wet and puddle: a cubic from 0 to 1 over `width` below the level, scaled by level/width up to 1.
+pub fn drenched(level: f64, blended: f64, width: f64) -> f64 {
+    if width == 0.0 || blended >= level + width {
+        return 0.0;
+    }
+    let scale = if level < width { level / width } else { 1.0 };
+    if blended <= level {
+        return scale;
+    }
+    // From the puddle's rim outwards, mirrored.
+    let away = (blended - level) / width;
+    scale * (1.0 - 3.0 * away.powi(2) + 2.0 * away.powi(3))
+}
+
+/// Noise that places puddles: three octaves of values at whole numbers, each blended over its four neighbours by the
+/// weights 1 − s and s, s = 10 f³ − 15 f⁴ + 6 f⁵; then spread from [0.25, 0.75] over [0, 1] by the cubic.
+pub fn puddle_map(x: f64, z: f64, seed: u32) -> f64 {
+    let mut sum = 0.0;
+    for (octave, [scale, shift]) in [[1.0, 0.0], [2.03, 7.31], [4.11, -3.77]].into_iter().enumerate() {
+        let at = [scale * x + shift, scale * z + shift];
+        let [sx, sz] = at.map(|a| {
+            let f = a - a.floor();
+            10.0 * f.powi(3) - 15.0 * f.powi(4) + 6.0 * f.powi(5)
+        });
+        let mut value = 0.0;
+        for (i, wx) in [(0, 1.0 - sx), (1, sx)] {
+            for (j, wz) in [(0, 1.0 - sz), (1, sz)] {
+                let cell = [at[0].floor() as i64 + i, at[1].floor() as i64 + j].map(|c| c.rem_euclid(1 << 32) as u32);
+                let word = crate::hash::pcg3d([cell[0], cell[1], seed + octave as u32])[0];
+                value += wx * wz * f64::from(word >> 8) / 16_777_216.0;
+            }
+        }
+        sum += value / f64::from(1 << octave);
+    }
+    let t = saturate(2.0 * (sum / 1.75) - 0.5);
+    3.0 * t.powi(2) - 2.0 * t.powi(3)
+}

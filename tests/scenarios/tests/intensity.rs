@@ -67,3 +67,23 @@ fn heavier_rain_keeps_every_streak_and_another_seed_does_not() {
     assert!(gained > 100, "{gained} pixels gained");
     assert!(lost(&other) > 1000, "{} pixels with another seed", lost(&other));
 }
+
+/// How far single streaks stand out from the rain around them: the spread of the coverage over its mean.
+fn standing_out(shot: &Shot) -> f64 {
+    let pixels = shot.pixels();
+    let middle = mean(&pixels, |p| p.rain);
+    mean(&pixels, |p| (p.rain - middle).powi(2)).sqrt() / middle
+}
+
+#[test]
+fn single_streaks_are_told_apart_in_light_rain_and_not_in_heavy_rain() {
+    if !gpu::available() {
+        return;
+    }
+    let [light, moderate, heavy] = [1.0, 5.0, 50.0].map(|intensity| standing_out(&shoot(intensity, 1).0));
+    assert!(light > 0.5, "light {light}, moderate {moderate}, heavy {heavy}");
+    assert!(
+        moderate < 0.7 * light && heavy < 0.25 * light,
+        "light {light}, moderate {moderate}, heavy {heavy}"
+    );
+}

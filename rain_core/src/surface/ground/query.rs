@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::layers::class_of;
 use super::run::Ground;
+use crate::error::clamped;
 use crate::surface::basins::{BasinRun, Basins};
 use crate::surface::height_field::GridFrame;
 use crate::weather::{SurfaceClass, SurfaceProperties};
@@ -12,6 +13,8 @@ use crate::weather::{SurfaceClass, SurfaceProperties};
 pub const DRY_LEVEL: f32 = -1e9;
 /// How far from a surface a place may be to be on it. Units: m.
 const REACH_M: f64 = 0.5;
+/// Depth to which a basin that cannot overflow is filled by hand. Units: m.
+const CLOSED_DEPTH_M: f64 = 0.1;
 
 /// Which surface a place is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -82,6 +85,18 @@ impl Ground {
     /// A place is on the surface that is nearest in height, if that is within 0.5 m; in a pool it is on the ground.
     #[must_use]
     pub fn water_at(&self, place: DVec3) -> WaterAt {
+        self.water_under(place, |leaf| self.levels[leaf as usize])
+    }
+
+    /// [`Ground::water_at`] with every basin filled by hand, as in [`Ground::levels_filled`]. Films and pores are as they
+    /// are.
+    #[must_use]
+    pub fn water_at_filled(&self, place: DVec3, share: f64) -> WaterAt {
+        self.water_under(place, |leaf| self.level_filled(leaf, share))
+    }
+
+    /// The water at a place under these levels of the basins without children.
+    fn water_under(&self, place: DVec3, level: impl Fn(u32) -> f64) -> WaterAt {
         let Some(cell) = self
             .cell_at(place.x, place.z)
             .filter(|&cell| !self.heights[cell].is_nan())
@@ -89,9 +104,8 @@ impl Ground {
             return WaterAt::default();
         };
         let ground = self.heights[cell];
-        let puddle_m = self
-            .pool_over(cell)
-            .map_or(0.0, |leaf| self.levels[leaf as usize] - ground);
+        let leaf = self.basins.basins().wettable_leaf_at(cell);
+        let puddle_m = leaf.map_or(0.0, |leaf| (level(leaf) - ground).max(0.0));
         // Distance to what is between the ground and the water's surface.
         let to_ground = if place.y > ground {
             (place.y - ground - puddle_m).max(0.0)
@@ -105,7 +119,7 @@ impl Ground {
             return WaterAt {
                 layer: GroundLayer::Ground,
                 class,
-                film_mm: self.cells.film[cell],
+                film_mm: if puddle_m > 0.0 { 0.0 } else { self.cells.film[cell] },
                 saturation: self.saturation(class, self.cells.pores[cell]),
                 puddle_m,
             };
@@ -186,21 +200,43 @@ impl Ground {
     /// the ground under each pixel finds the shoreline between cell centres. Does nothing if `out` is not as long as
     /// the grid.
     pub fn levels(&self, out: &mut [f32]) {
+        self.levels_under(out, |leaf| self.levels[leaf as usize]);
+    }
+
+    /// [`Ground::levels`] with every basin filled by hand, whatever water it holds: from its bottom to this share of the
+    /// height at which it overflows, or of 0.1 m where it cannot. Basins within a larger one share its level, so the
+    /// lowest ground of each floods first. `share` is held in [0, 1]; what is not a number counts as 0.
+    pub fn levels_filled(&self, share: f64, out: &mut [f32]) {
+        self.levels_under(out, |leaf| self.level_filled(leaf, share));
+    }
+
+    fn level_filled(&self, leaf: u32, share: f64) -> f64 {
+        let basins = self.basins.basins();
+        let top = &basins.basins()[basins.top(leaf) as usize];
+        let full = top.spill_m.unwrap_or(top.bottom_m + CLOSED_DEPTH_M);
+        top.bottom_m + clamped(share, 0.0, 1.0) * (full - top.bottom_m)
+    }
+
+    fn levels_under(&self, out: &mut [f32], level: impl Fn(u32) -> f64) {
         if out.len() != self.heights.len() {
             return;
         }
         out.fill(DRY_LEVEL);
         let [nx, nz] = self.frame.cells();
+        let over = |cell: usize| {
+            let level = level(self.basins.basins().wettable_leaf_at(cell)?);
+            (level > self.heights[cell]).then_some(level)
+        };
         for &cell in &self.wettable {
             let cell = cell as usize;
-            let Some(leaf) = self.pool_over(cell) else { continue };
-            let level = (self.levels[leaf as usize] - self.base_m) as f32;
+            let Some(level) = over(cell) else { continue };
+            let level = (level - self.base_m) as f32;
             let (x, z) = (cell % nx, cell / nx);
             for row in z.saturating_sub(1)..(z + 2).min(nz) {
                 for column in x.saturating_sub(1)..(x + 2).min(nx) {
                     let at = row * nx + column;
                     // A neighbour that is wet writes its own.
-                    if at == cell || self.pool_over(at).is_none() {
+                    if at == cell || over(at).is_none() {
                         out[at] = out[at].max(level);
                     }
                 }

@@ -356,6 +356,81 @@ fn levels_reach_one_cell_beyond_the_water() {
 }
 
 #[test]
+fn basins_are_filled_by_hand_without_touching_the_water() {
+    let ground = ground(DVec3::ZERO);
+    let before = bits(&ground);
+    let cells = ground.ground_heights().len();
+    let mut levels = vec![0.0; cells];
+    let mut last = 0;
+    for share in [0.0, 0.25, 0.5, 1.0] {
+        ground.levels_filled(share, &mut levels);
+        let depth = |cell: usize| levels[cell] - ground.ground_heights()[cell];
+        let wet = (0..cells).filter(|&cell| depth(cell) > 0.0).count();
+        assert!(wet > last || share == 0.0, "{share}: {wet} cells, {last} before");
+        let deepest = (0..cells).map(depth).fold(0.0, f32::max);
+        let bowl = DVec3::new(12.1, 0.15, 4.1);
+        let water = ground.water_at_filled(bowl, share);
+        assert_eq!(water.layer, GroundLayer::Ground);
+        assert!(water.puddle_m <= f64::from(deepest) + 1e-6, "{water:?}");
+        assert_eq!(water.puddle_m > 0.0, share > 0.0);
+        let slope = ground.water_at_filled(DVec3::new(3.1, 0.42, 4.1), share);
+        assert_eq!(slope.puddle_m, 0.0, "none on the slope");
+        last = wet;
+    }
+    assert!(last > 20, "{last}");
+    // Full is where the water would spill: a storm fills no higher.
+    let full = levels.clone();
+    let mut stormy = ground.clone();
+    run(&mut stormy, rain(400.0), 900.0);
+    stormy.levels(&mut levels);
+    let pairs = levels.iter().zip(&full).filter(|(now, _)| **now > DRY_LEVEL);
+    assert!(pairs.clone().count() > 20 && pairs.clone().all(|(now, full)| (now - full).abs() < 2e-3));
+    // What is no share counts as the nearest end.
+    for (bad, held) in [(f64::NAN, 0.0), (-1.0, 0.0), (7.0, 1.0)] {
+        let (mut a, mut b) = (vec![0.0; cells], vec![0.0; cells]);
+        ground.levels_filled(bad, &mut a);
+        ground.levels_filled(held, &mut b);
+        assert_eq!(a, b, "{bad}");
+    }
+    assert_eq!(bits(&ground), before);
+}
+
+#[test]
+fn what_lies_higher_dries_first() {
+    let mut ground = ground(DVec3::ZERO);
+    run(&mut ground, rain(100.0), 900.0);
+    // Along the flank of the bowl, from its bottom to the slope around it.
+    let places: Vec<DVec3> = (0..10)
+        .map(|i| {
+            let x = 12.125 + 0.25 * f64::from(i);
+            let cell = ground.cell_at(x, 4.125).expect("on the map");
+            let height = ground.base_height_m() + f64::from(ground.ground_heights()[cell]);
+            DVec3::new(x, height, 4.125)
+        })
+        .collect();
+    let mut dry_at = vec![f64::INFINITY; places.len()];
+    let sun = ColumnForcing {
+        rain_mm_h: 0.0,
+        evaporation_mm_h: 2.0,
+    };
+    for minute in 0..4000 {
+        ground.advance(&sun, 60.0, 1920).expect("valid");
+        for (place, at) in places.iter().zip(&mut dry_at) {
+            let water = ground.water_at(*place);
+            if water.puddle_m == 0.0 && water.film_mm < 0.01 && *at == f64::INFINITY {
+                *at = f64::from(minute);
+            }
+        }
+    }
+    assert!(dry_at.iter().all(|at| at.is_finite()), "{dry_at:?}");
+    let rises = places.windows(2).zip(dry_at.windows(2));
+    for (place, at) in rises.filter(|(place, _)| place[1].y > place[0].y) {
+        assert!(at[1] <= at[0], "{place:?} {dry_at:?}");
+    }
+    assert!(dry_at[0] > 4.0 * dry_at[9], "{dry_at:?}");
+}
+
+#[test]
 fn exposure_follows_the_cover_map() {
     let mut ground = ground(DVec3::ZERO);
     let wind = FallSlope::new(DVec2::new(4.0, 0.0), 0.17).expect("valid");

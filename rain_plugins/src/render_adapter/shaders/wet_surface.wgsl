@@ -11,8 +11,8 @@
 #import rain::surface::{
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
     rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
-    rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_remembered, rain_memory_share,
-    rain_puddle_rim,
+    rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_noise_puddle, rain_normal_aslant, rain_udn,
+    rain_remembered, rain_memory_share, rain_puddle_rim,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -29,7 +29,7 @@
 
 struct Wetting {
     // x: strength 0..1, y: porosity (below 0: from roughness), z: 1 when the mesh's tag holds a wetness of its own,
-    // w unused.
+    // w: wetness set by hand (below 0: none).
     take: vec4<f32>,
     // Painted puddles. x: source (0 none, 1 vertex colours, 2 texture), y: margin, z: least flood level, w: depth m.
     paint: vec4<f32>,
@@ -37,7 +37,7 @@ struct Wetting {
     paint_flags: vec4<f32>,
     // Noise puddles. x, y: 1 / size along x and z, 1/m, z: seed, w: level (below 0: the weather's).
     noise: vec4<f32>,
-    // x: present, y: height map, z, w unused.
+    // x: present, y: height map, z: width of the drenched ground, w: share of the noise.
     noise_flags: vec4<f32>,
 }
 
@@ -51,6 +51,8 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(109) var rain_film_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(114) var rain_wave_normals: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(115) var rain_more_wave_normals: texture_2d<f32>;
 
 // Perceptual roughness of still water: a mirror, as far as lamps of finite size let it be one.
 const WATER_ROUGHNESS: f32 = 0.045;
@@ -88,7 +90,19 @@ fn water_surface(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, depth: f32, expos
         out.slope += wave.xy * inside;
         out.variance += max(wave.z, 0.0) * inside;
     }
+    if (look.map.w > 0.0) {
+        out.slope = rain_udn(out.slope, look.map.w * room * wave_normals(p, ddx, ddy));
+    }
     return out;
+}
+
+// What lies aslant in the two moving normal maps together.
+fn wave_normals(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>) -> vec2<f32> {
+    let a = rain_surface.water.map;
+    let b = rain_surface.water.more_map;
+    let first = textureSampleGrad(rain_wave_normals, rain_sampler, p.xz * a.x + a.yz, ddx * a.x, ddy * a.x);
+    let second = textureSampleGrad(rain_more_wave_normals, rain_sampler, p.xz * b.x + b.yz, ddx * b.x, ddy * b.x);
+    return 0.5 * (rain_normal_aslant(first.xy) + rain_normal_aslant(second.xy));
 }
 
 // What artists placed at a point.
@@ -99,10 +113,12 @@ struct Placed {
     // Where rain wets and where it rings, 0..1.
     wettable: f32,
     ripples: f32,
+    // Film of drenched ground, 0..1.
+    film: f32,
 }
 
 fn placed_water(paint: vec4<f32>, height: f32, p: vec2<f32>) -> Placed {
-    var out = Placed(0.0, 0.0, 1.0, 1.0);
+    var out = Placed(0.0, 0.0, 1.0, 1.0, 0.0);
     let levels = rain_surface.artist;
     if (wetting.paint.x > 0.5) {
         out.wettable = paint.b;
@@ -119,12 +135,14 @@ fn placed_water(paint: vec4<f32>, height: f32, p: vec2<f32>) -> Placed {
         out.depth = water * wetting.paint.w;
     }
     if (wetting.noise_flags.x > 0.5) {
-        let map = rain_puddle_noise(rain_surface.eye.xz, p, wetting.noise.xy, u32(wetting.noise.z));
-        let blended = 1.0 - (1.0 - map) * (1.0 - select(0.0, height, wetting.noise_flags.y > 0.5));
+        let noise = rain_puddle_noise(rain_surface.eye.xz, p, wetting.noise.xy, u32(wetting.noise.z));
+        let map = wetting.noise_flags.w * noise;
         let level = select(levels.z, wetting.noise.w, wetting.noise.w >= 0.0);
-        let amount = max(0.0, level - blended);
-        out.depth = max(out.depth, 0.01 * amount);
-        out.water = max(out.water, smoothstep(0.0, 0.08, amount));
+        let relief = select(0.0, height, wetting.noise_flags.y > 0.5);
+        let puddle = rain_noise_puddle(level, map, relief, wetting.noise_flags.z);
+        out.depth = max(out.depth, 0.01 * puddle.x);
+        out.water = max(out.water, puddle.y);
+        out.film = puddle.z;
     }
     return out;
 }
@@ -213,6 +231,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         // A thing that moves carries its water with it, under cover too.
         wet = unpack2x16unorm(get_tag(in.instance_index)) * wetting.take.x * rain_catch(normal.y, dot(normal, to_rain));
     }
+    wet.x = select(wet.x, wetting.take.w * wetting.take.x, wetting.take.w >= 0.0);
+    // Drenched ground is soaked, too.
+    wet = max(wet, vec2<f32>(placed.film * level * wetting.take.x));
     let wetness = max(wet.x, smoothstep(0.0, 0.5, puddle));
     // Water runs off what is steep.
     let film = max(wet.y * smoothstep(0.2, 0.8, normal.y), puddle);
@@ -239,6 +260,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     pbr.material.perceptual_roughness = clamp(mix(rough, pow(mirror, 0.25), puddle), 0.03, 1.0);
     pbr.material.metallic *= 1.0 - puddle;
     pbr.material.reflectance = mix(pbr.material.reflectance, vec3<f32>(WATER_REFLECTANCE), film);
+    // Both ends of Fresnel's curve go with the square of this.
+    let shine = mix(1.0, rain_surface.water.more_map.w, puddle);
+    pbr.material.reflectance *= sqrt(shine);
 
     pbr.material.base_color = alpha_discard(pbr.material, pbr.material.base_color);
 #ifdef PREPASS_PIPELINE
@@ -255,7 +279,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     }
     out.color = apply_pbr_lighting(pbr);
     let reflected = lighting::F_AB(pbr.material.perceptual_roughness, max(dot(pbr.N, to_eye), 1e-4));
-    out.color += vec4<f32>(mirrored.xyz * mirrored.w * (0.02 * reflected.x + reflected.y), 0.0);
+    out.color += vec4<f32>(mirrored.xyz * mirrored.w * shine * (0.02 * reflected.x + reflected.y), 0.0);
     out.color = main_pass_post_lighting_processing(pbr, out.color);
     return out;
 #endif

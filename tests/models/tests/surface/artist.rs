@@ -2,9 +2,11 @@
 
 use proptest::prelude::*;
 use rain_core::surface::artist_look::{
-    ArtistLook, accumulated_water, crack_water, effective_wetness, lagarde_porosity, lagarde_porous_wet, lagarde_wet,
-    nguyenova_puddle, nguyenova_puddle_amount, nguyenova_puddle_depth_mm, painted_puddle_water, screen_blend,
+    ArtistLook, accumulated_water, crack_water, drenched_share, effective_wetness, lagarde_porosity,
+    lagarde_porous_wet, lagarde_wet, nguyenova_puddle, nguyenova_puddle_amount, nguyenova_puddle_depth_mm,
+    painted_puddle_water, screen_blend,
 };
+use rain_core::surface::puddle_map;
 use rain_reference::artist_look as truth;
 
 use super::{ANY, config};
@@ -140,6 +142,82 @@ fn the_sources_looks_take_what_is_no_share() {
         );
     }
     assert_eq!(painted_puddle_water(1.0, 0.0, f64::INFINITY), 0.0);
+}
+
+#[test]
+fn the_drenched_ground_lies_between_wet_and_puddle() {
+    let (mut share, mut wrong) = (Worst::default(), Worst::default());
+    for level in shares() {
+        for blended in shares() {
+            assert_eq!(
+                drenched_share(level, blended, 0.0),
+                0.0,
+                "wet passes straight into puddle"
+            );
+            for width in [1e-3, 0.05, 0.3, 1.0] {
+                let found = drenched_share(level, blended, width);
+                let exact = truth::drenched(level, blended, width);
+                share.absolute(width * found, width * exact, || format!("{level} {blended} {width}"));
+                wrong.absolute(
+                    width * drenched_share(level, 0.95 * blended, width),
+                    width * exact,
+                    String::new,
+                );
+                assert!((0.0..=1.0).contains(&found));
+                if blended >= level + width + 1e-12 || level == 0.0 {
+                    assert_eq!(found, 0.0, "{level} {blended} {width}: wet ground, or none at all");
+                }
+                if level >= width && blended <= level {
+                    assert_eq!(found, 1.0, "{level} {blended} {width}: puddle");
+                }
+            }
+        }
+    }
+    share.assert_below(1e-15, 2000);
+    assert!(wrong.error > 0.01, "a height 5 % off goes unseen");
+    for a in ANY {
+        let held = if a.is_nan() { 0.0 } else { a.clamp(0.0, 1.0) };
+        assert_eq!(drenched_share(a, a, a), drenched_share(held, held, held), "{a}");
+    }
+}
+
+#[test]
+fn the_puddle_map_is_its_noise_and_has_no_tiles() {
+    let (mut map, mut wrong) = (Worst::default(), Worst::default());
+    let at = |i: u32| f64::from(i) * 0.137 - 300.0;
+    for i in 0..4000_u32 {
+        for (x, z, seed) in [
+            (at(i), 0.3 * at(i) + 7.0, 5),
+            (1e6 + at(i), -3.0 * at(i), 0xff_ffff - 2),
+        ] {
+            let exact = truth::puddle_map(x, z, seed);
+            map.absolute(puddle_map(x, z, seed), exact, || format!("{x} {z} {seed}"));
+            wrong.absolute(puddle_map(x, z, seed + 1), exact, String::new);
+        }
+    }
+    map.assert_below(1e-12, 8000);
+    assert!(wrong.error > 0.5, "another seed goes unseen");
+    // What lies a shift away is as good as another map, whatever the shift: nothing repeats.
+    for shift in [5.0, 8.0, 16.0, 50.0, 64.0, 100.0, 128.0, 256.0] {
+        let pairs: Vec<(f64, f64)> = (0..8000_u32)
+            .map(|i| {
+                let (x, z) = (f64::from(i % 90) * 1.3, f64::from(i / 90) * 1.7);
+                (puddle_map(x, z, 3), puddle_map(x + shift, z, 3))
+            })
+            .collect();
+        let r = rain_reference::hash::correlation(&pairs);
+        assert!(r.abs() < 0.1, "{shift}: {r}");
+    }
+    let near: Vec<(f64, f64)> = (0..2000_u32)
+        .map(|i| (puddle_map(at(i), 0.0, 3), puddle_map(at(i) + 0.1, 0.0, 3)))
+        .collect();
+    assert!(
+        rain_reference::hash::correlation(&near) > 0.7,
+        "a neighbour is no other map"
+    );
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 1e10] {
+        assert_eq!((puddle_map(bad, 0.0, 1), puddle_map(0.0, bad, 1)), (1.0, 1.0), "{bad}");
+    }
 }
 
 proptest! {
