@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+use rain_core::waves::RING_FADE;
 
 /// Structs that cross from the CPU.
 pub const TYPES: &str = include_str!("../shaders/types.wgsl");
@@ -33,7 +34,8 @@ pub const LIBRARIES: &[Library] = library![
     "standing_water",
     "placed_water",
     "slopes",
-    "waves"
+    "waves",
+    "ring_layers"
 ];
 
 /// A pass's own source.
@@ -58,7 +60,8 @@ pub const PASSES: &[Pass] = passes![
     "mask",
     "slope_mips",
     "reflection_mips",
-    "waves"
+    "waves",
+    "ring_layers"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
@@ -77,6 +80,7 @@ pub fn constants() -> String {
         ("RAIN_FADE_END", FADE_END),
         ("RAIN_BUILDING_HEIGHT_M", BUILDING_HEIGHT_M),
         ("RAIN_DEEPEST_PUDDLE_M", DEEPEST_PUDDLE_M),
+        ("RAIN_RING_FADE", f64::from(RING_FADE)),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }
