@@ -187,6 +187,11 @@ struct WaveParams {
     rim: f32,
     // a = k dt/2 at its outer edge.
     rim_damping: f32,
+    // Variance of the slopes that the cells cannot show.
+    hidden_variance: f32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
 }
 
 // A source of waves on a straight way; see SweptSource in rain_core.
@@ -216,4 +221,31 @@ struct WaveBin {
     first: u32,
     count: u32,
     pad: u32,
+}
+
+// Procedural rings of four layers at a moment; see RingLayers in rain_core. A component for each layer.
+struct RingLayerParams {
+    // Part of the present cycle, 0..1.
+    parts: vec4<f32>,
+    // Weight, 0..1.
+    weights: vec4<f32>,
+    // Whole cycles before it, and their number after which they start anew.
+    wholes: vec4<u32>,
+    cycles: vec4<u32>,
+    // How far the layer is moved, texels of the circle texture.
+    offset_x: vec4<u32>,
+    offset_z: vec4<u32>,
+    // Texels of the map and of the circle texture on a side, powers of two.
+    cells: u32,
+    texels: u32,
+    // How often the circle texture lies along a side.
+    repeats: u32,
+    // 1 where layers grow by the number of their rings, 0 by strength.
+    by_number: u32,
+    // Slope of a ring for a profile of 1.
+    steepness: f32,
+    // Variance of the slopes of rings that are not drawn.
+    hidden_variance: f32,
+    pad_a: u32,
+    pad_b: u32,
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+use rain_core::waves::RING_FADE;
 
 /// Structs that cross from the CPU.
 pub const TYPES: &str = include_str!("../shaders/types.wgsl");
@@ -35,7 +36,8 @@ pub const LIBRARIES: &[Library] = library![
     "wind_waves",
     "placed_water",
     "slopes",
-    "waves"
+    "waves",
+    "ring_layers"
 ];
 
 /// A pass's own source.
@@ -60,7 +62,8 @@ pub const PASSES: &[Pass] = passes![
     "mask",
     "slope_mips",
     "reflection_mips",
-    "waves"
+    "waves",
+    "ring_layers"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
@@ -91,6 +94,7 @@ pub fn constants() -> String {
         ("RAIN_WIND_TILE", WIND_TILE),
         ("RAIN_WIND_DIRECTIONS", WIND_DIRECTIONS),
         ("RAIN_WAVE_PERIOD_S", WAVE_PERIOD_S),
+        ("RAIN_RING_FADE", f64::from(RING_FADE)),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }

@@ -146,6 +146,10 @@ pub struct WaveParams {
     pub per_cell: f32,
     pub rim: f32,
     pub rim_damping: f32,
+    pub hidden_variance: f32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+    pub pad_c: u32,
 }
 
 /// A source of waves on a straight way.
@@ -170,6 +174,26 @@ pub struct WaveBin {
     pub first: u32,
     pub count: u32,
     pub pad: u32,
+}
+
+/// Procedural rings at a moment.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct RingLayerParams {
+    pub parts: [f32; 4],
+    pub weights: [f32; 4],
+    pub wholes: [u32; 4],
+    pub cycles: [u32; 4],
+    pub offset_x: [u32; 4],
+    pub offset_z: [u32; 4],
+    pub cells: u32,
+    pub texels: u32,
+    pub repeats: u32,
+    pub by_number: u32,
+    pub steepness: f32,
+    pub hidden_variance: f32,
+    pub pad_a: u32,
+    pub pad_b: u32,
 }
 
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
@@ -198,8 +222,10 @@ pub fn layouts() -> Vec<Layout> {
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors),
         layout!(MaskView: eye_from_clip, screen, surface),
         layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant_squared, g, keep, inverse_keep,
-            blend, per_cell, rim, rim_damping),
+            blend, per_cell, rim, rim_damping, hidden_variance, pad_a, pad_b, pad_c),
         layout!(WaveSource: low, count, start, along, length, per_width, height, back),
         layout!(WaveBin: place, first, count, pad),
+        layout!(RingLayerParams: parts, weights, wholes, cycles, offset_x, offset_z, cells, texels, repeats, by_number,
+            steepness, hidden_variance, pad_a, pad_b),
     ]
 }

@@ -11,5 +11,6 @@ pub mod gpu_types;
 pub mod masks;
 pub mod rainfall;
 pub mod reflection;
+pub mod ring_layers;
 pub mod slope_mips;
 pub mod waves;

@@ -3,7 +3,8 @@
 //! [`WaveField`] is the water of a puddle, a tile or the surroundings of a car: u_tt + k_d u_t = ∇·(c²∇u) + s in
 //! single precision on square cells, stepped in fixed sub-steps below a proved bound. [`DropImpact`] and
 //! [`SweptSource`] disturb it. Far water has no field: [`RingTable`] draws single rings in closed form, and
-//! [`slope_variance`] says how rough rain makes a surface whose rings cannot be resolved.
+//! [`slope_variance`] says how rough rain makes a surface whose rings cannot be resolved. [`RingLayers`] are the artists'
+//! rings: a [`CircleMap`] in four layers, without a field.
 //!
 //! Directions: `x` runs along a row, `z` from row to row; cell (i, j) has its centre at ((i + ½) dx, (j + ½) dx).
 //!
@@ -16,6 +17,7 @@
 mod bands;
 mod bed;
 mod border;
+mod circles;
 mod dispersion;
 mod double;
 mod energy;
@@ -24,6 +26,7 @@ mod field;
 mod impact;
 mod patch;
 mod ring;
+mod ring_layers;
 mod rows;
 mod settings;
 mod slope_variance;
@@ -32,6 +35,7 @@ mod stencil;
 mod sweep;
 
 pub use border::Border;
+pub use circles::{Circle, CircleMap, CirclePoint, CircleSettings, CircleTexel};
 pub use dispersion::{
     bottom_damping, bottom_damping_f32, bulk_damping, bulk_damping_f32, group_speed, group_speed_f32,
     minimum_phase_speed, phase_speed, phase_speed_f32, shallow_speed, shallow_speed_f32, wave_frequency,
@@ -42,8 +46,12 @@ pub use erf::erf_f32;
 pub use field::WaveField;
 pub use impact::DropImpact;
 pub use ring::{Ring, RingTable};
+pub use ring_layers::{
+    RING_CYCLES, RING_FADE, RING_LAYERS, RingForcing, RingGrowth, RingIntensity, RingLayerSettings, RingLayerState,
+    RingLayers, ring_clocks, ring_layer_weights, ring_presence_f32, ring_profile_f32,
+};
 pub use settings::WaveSettings;
-pub use slope_variance::{impact_slope_variance, slope_variance};
+pub use slope_variance::{impact_slope_variance, rain_slope_variance, slope_variance};
 pub use standing::{StandingWave, StandingWaveResult};
 pub use stencil::{Stencil, sub_steps};
 pub use sweep::{Push, SweptSource, swept_laplacian_f32, swept_weight, swept_weight_f32};

@@ -1,5 +1,5 @@
 // Slope maps of a water surface: x and y: slope along world x and z; z: variance of the slope lost to filtering, the
-// sum of both axes, 0 in the finest level; w: height above the level, mm.
+// sum of both axes, in the finest level that of waves too short for its texels; w: height above the level, mm.
 
 // One texel of the next level from the four below it. The variance is taken around the mean, so nothing cancels.
 fn rain_slope_mip(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {

@@ -195,5 +195,5 @@ fn slopes(@builtin(global_invocation_id) id: vec3<u32>) {
         let near = smoothstep(vec2<f32>(0.0), vec2<f32>(params.rim), vec2<f32>(edge));
         fade = near.x * near.y;
     }
-    textureStore(map, cell, vec4<f32>(fade * params.per_cell * slope, 0.0, fade * 1e3 * here.x));
+    textureStore(map, cell, vec4<f32>(fade * params.per_cell * slope, params.hidden_variance, fade * 1e3 * here.x));
 }

@@ -2,7 +2,7 @@
 //!
 //! A slope map is an [`SLOPE_FORMAT`] texture, one for every pass that makes ripples or waves: r and g the slope of the
 //! surface along world x and z (∂h/∂x, ∂h/∂z), b the variance of the slope lost to filtering (⟨s²⟩ − ⟨s⟩², the sum of
-//! both axes; 0 in the finest level), a the height above the level in mm. All four filter linearly.
+//! both axes; in the finest level that of waves too short for its texels), a the height above the level in mm. All four filter linearly.
 //!
 //! Inputs: the finest level. Output: all others, each texel from the four below it: slopes and heights are averaged,
 //! and the variance gains what the average hides, so ⟨s⟩² + b is the same in every level.

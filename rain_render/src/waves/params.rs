@@ -110,7 +110,7 @@ pub struct RippleSettings {
     ///
     /// A drop's footprint is two cells at least, and slopes fall with its cube: cells of 7.8 mm show a root mean square
     /// of 0.0045 at 25 mm/h, cells of 3.9 mm 0.025, of 2 mm 0.055
-    /// (see [`rain_core::waves::slope_variance`], which gives the material what the cells do not show).
+    /// (see [`rain_core::waves::rain_slope_variance`]). The map holds what the cells do not show as variance.
     pub side_m: f64,
     /// Depth of the water. Units: m. Domain: [1e-3, 1]. Default: 0.005.
     pub depth_m: f64,
@@ -257,6 +257,10 @@ impl Rules {
             per_cell: (1.0 / self.cell_m) as f32,
             rim: rim as f32,
             rim_damping: (0.5 * RIM_STRENGTH * self.courant / rim.max(1.0)) as f32,
+            hidden_variance: 0.0,
+            pad_a: 0,
+            pad_b: 0,
+            pad_c: 0,
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use rain_core::error::ConfigError;
 use rain_core::hash;
+use rain_core::ops;
 use rain_core::rainfall::{DiameterTable, DropSizes, terminal_velocity};
 use rain_core::splash::for_each_impact;
-use rain_core::waves::DropImpact;
+use rain_core::waves::{DropImpact, rain_slope_variance};
 
 use super::calm::CalmBound;
 use super::frame::{MAX_STEPS, Plan, WaveFrame, Way};
@@ -29,6 +30,9 @@ pub struct RippleTile {
     sizes: Option<DropSizes>,
     drops_per_m2_s: f64,
     diameters: Option<DiameterTable<128>>,
+    /// Variance of the slopes of rings too fine for the cells: where the rain leads to, and where it is.
+    hidden_target: f64,
+    hidden_variance: f64,
     left_ns: u64,
     steps: u32,
     bound: CalmBound,
@@ -50,6 +54,8 @@ impl RippleTile {
             sizes: None,
             drops_per_m2_s: 0.0,
             diameters: None,
+            hidden_target: 0.0,
+            hidden_variance: 0.0,
             left_ns: 0,
             steps: 0,
             bound: CalmBound::default(),
@@ -78,7 +84,7 @@ impl RippleTile {
         self.drops_per_m2_s
     }
 
-    /// What falls from now on; nothing where no drop is large enough. Takes tens of microseconds when it has changed.
+    /// What falls from now on; nothing where no drop is large enough. Takes about a tenth of a millisecond when it has changed.
     pub fn set_rain(&mut self, sizes: &DropSizes) {
         if self.sizes == Some(*sizes) {
             return;
@@ -90,11 +96,25 @@ impl RippleTile {
         // Without drops there is no table.
         self.diameters = table.ok().filter(|_| flux > 0.0);
         self.drops_per_m2_s = if self.diameters.is_some() { flux } else { 0.0 };
+        let variance = |cell_m| rain_slope_variance(sizes, self.settings.depth_m, self.variance_decay_per_s(), cell_m);
+        self.hidden_target = (variance(0.0) - variance(self.settings.cell_m())).max(0.0);
+    }
+
+    /// Rate at which the square of waves decays: k_d of the field without a decay of its own. Units: 1/s.
+    fn variance_decay_per_s(&self) -> f64 {
+        2.0 * self.rules.decay_per_s
+    }
+
+    /// Variance of the slopes of rings too fine for the cells, which the map holds as such. Units: none.
+    #[must_use]
+    pub fn hidden_variance(&self) -> f64 {
+        self.hidden_variance
     }
 
     /// Stills everything at once.
     pub fn reset(&mut self) {
         self.plan.clear();
+        self.hidden_variance = 0.0;
         self.bound = CalmBound::default();
         self.still |= !self.asleep;
         self.asleep = true;
@@ -110,6 +130,9 @@ impl RippleTile {
         }
         let room = MAX_STEPS - self.plan.steps.len();
         let steps = ((total / self.rules.step_ns) as usize).min(room);
+        // The source of variance is constant, and it decays as the waves do.
+        let left = ops::exp(-self.variance_decay_per_s() * f64::from(steps as u32) * self.rules.step_s());
+        self.hidden_variance = self.hidden_target + (self.hidden_variance - self.hidden_target) * left;
         for _ in 0..steps {
             self.rain();
             self.plan.finish(&self.rules, true);
@@ -190,6 +213,7 @@ impl RippleTile {
             params.moved = [self.rules.cells as i32; 2];
         }
         params.blend = self.left_ns as f32 / self.rules.step_ns as f32;
+        params.hidden_variance = self.hidden_variance as f32;
         frame.params = Some(params);
         frame.settle = self.still;
         frame.balance = false;

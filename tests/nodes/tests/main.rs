@@ -8,6 +8,7 @@ mod hash_parity;
 mod maps;
 mod optical_depth;
 mod reflection;
+mod ring_layers;
 mod shader_functions;
 mod slope_mips;
 mod water;

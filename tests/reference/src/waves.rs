@@ -200,3 +200,40 @@ pub fn slope_integral(momentum: f64, volume: f64, s: f64, h: f64, k_d: f64) -> f
         k * k * k * simpson(0.0, end, panels, square)
     }) / TAU
 }
+
+/// Lagarde's animated circle: slope outwards over the steepness, from R, the part of the cycle and the layer's weight.
+#[must_use]
+pub fn ring_of_a_circle(nearness: f64, drop_frac: f64, weight: f64) -> f64 {
+    let saturate = |x: f64| x.clamp(0.0, 1.0);
+    let time_frac = drop_frac - 1.0 + nearness;
+    let drop_factor = saturate(0.2 + weight * 0.8 - drop_frac);
+    drop_factor * nearness * ((time_frac * 9.0).clamp(0.0, 3.0) * std::f64::consts::PI).sin()
+}
+
+/// Lagarde's times of the four layers.
+#[must_use]
+pub fn ring_times(time: f64) -> [f64; 4] {
+    let (times, adds) = ([1.0, 0.85, 0.93, 1.13], [0.0, 0.2, 0.45, 0.7]);
+    std::array::from_fn(|k| ((time * times[k] + adds[k]) * 1.6).rem_euclid(1.0))
+}
+
+/// Lagarde's composed normal before it is normalised, x and y of it: `at(u, v)` reads the circle texture (distance,
+/// direction x and y, time offset), which repeats.
+#[must_use]
+pub fn ring_layers_normal(
+    at: impl Fn(f64, f64) -> [f64; 4],
+    [u, v]: [f64; 2],
+    times: [f64; 4],
+    intensity: f64,
+) -> [f64; 2] {
+    let offsets = [[0.25, 0.0], [-0.55, 0.3], [0.6, 0.85], [0.5, -0.75]];
+    let mut normal = [0.0; 2];
+    for k in 0..4 {
+        let weight = ((intensity - 0.25 * k as f64) * 4.0).clamp(0.0, 1.0);
+        let [distance, x, y, offset] = at(u + offsets[k][0], v + offsets[k][1]);
+        let factor = ring_of_a_circle(distance, (offset + times[k]).rem_euclid(1.0), weight);
+        normal[0] += weight * x * factor * 0.35;
+        normal[1] += weight * y * factor * 0.35;
+    }
+    normal
+}

@@ -6,6 +6,7 @@ mod field;
 mod impact;
 mod modes;
 mod open_water;
+mod ring_layers;
 mod rings;
 mod sources;
 

@@ -12,6 +12,8 @@ use rain_render::waves::{
 
 use crate::device::Device;
 
+pub use map::picture;
+
 /// The GPU's side of a tile.
 struct Rig {
     waves: WavesGpu,
