@@ -96,7 +96,7 @@ pub mod prelude {
         KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint, SurfaceWetting,
         WaterAppearance,
     };
-    pub use crate::waves::{WaterDisturber, WaveWaterSettings};
+    pub use crate::waves::{RingLayerSettings, RingSource, WaterDisturber, WaveWaterSettings};
     pub use crate::{
         RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
     };

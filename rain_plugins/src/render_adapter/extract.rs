@@ -116,7 +116,7 @@ pub(super) fn extract_waves(mut main: ResMut<MainWorld>, mut extracted: ResMut<E
             rings.lose();
         } else {
             std::mem::swap(&mut rings.handover, &mut extracted.ripples);
-            extracted.ripple_side_m = rings.tile().settings().side_m;
+            extracted.ripple_side_m = rings.side_m();
         }
     }
     if let Some(mut waves) = main.get_resource_mut::<PuddleWaves>() {

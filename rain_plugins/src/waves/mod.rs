@@ -1,13 +1,14 @@
 //! Water that moves: rings under rain, and waves that wheels, feet and other things make in puddles near the view.
 //!
-//! Rings are a small tile of water that repeats over the world, into which the drops of the present rain fall
-//! ([`RippleTile`]). Waves are a tile of real puddles, with their shores, that follows the view ([`WaveTile`]): they run
-//! while something disturbs them and sleep when calm, out of sight or dry. Both are seen only: no state depends on them.
+//! Rings are a small tile of water that repeats over the world: simulated, with the drops of the present rain falling
+//! into it ([`RippleTile`]), or procedural ([`RingSource::Layers`]). Waves are a tile of real puddles, with their shores,
+//! that follows the view ([`WaveTile`]): they run while something disturbs them and sleep when calm, out of sight or dry.
+//! Both are seen only: no state depends on them.
 //!
 //! | file | concept |
 //! |---|---|
 //! | `disturb.rs` | [`WaterDisturber`]: what moves the water |
-//! | `rings.rs` | the tile of rings |
+//! | `rings.rs` | the tile of rings, and where they come from |
 //! | `tile.rs` | the tile of puddles |
 
 mod disturb;
@@ -15,23 +16,28 @@ mod rings;
 mod tile;
 
 use bevy::prelude::*;
+use rain_render::ring_layers::RingLayerFrame;
 use rain_render::waves::{RippleSettings, RippleTile, WaveFrame, WaveTile, WaveTileSettings};
 
 pub use disturb::WaterDisturber;
-pub use rings::RainRings;
+pub use rain_core::waves::{CircleSettings, RingGrowth, RingIntensity, RingLayerSettings};
+pub use rings::{RainRings, RingSource};
 pub use tile::PuddleWaves;
 
 use crate::render_adapter::RenderApp;
 use crate::schedule::RainViewSystems;
 use crate::surface::WaterLevels;
 
-/// Settings of rings and waves. Changes take effect when the app starts.
+/// Settings of rings and waves. Changes take effect when the app starts, but for `ring_source`.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub struct WaveWaterSettings {
     /// The tile of puddles.
     pub waves: WaveTileSettings,
     /// The tile of rings.
     pub rings: RippleSettings,
+    /// Where rings come from. May be changed at any time; what does not validate is named in the log, and the last good
+    /// source stays.
+    pub ring_source: RingSource,
     /// No interactive waves: wheels and feet leave puddles still.
     pub no_waves: bool,
     /// No rings under rain.
@@ -42,6 +48,8 @@ pub struct WaveWaterSettings {
 #[derive(Debug, Default)]
 pub(crate) struct Handover {
     pub frame: WaveFrame,
+    /// Procedural rings in place of the frame.
+    pub layers: Option<RingLayerFrame>,
     pub wanted: bool,
 }
 
@@ -59,7 +67,9 @@ impl Plugin for WavesPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    rings::rain_on_water.run_if(resource_exists::<RainRings>),
+                    (rings::choose_rings, rings::rain_on_water)
+                        .chain()
+                        .run_if(resource_exists::<RainRings>),
                     tile::move_water.run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
                 )
                     .in_set(RainViewSystems::Views),

@@ -5,5 +5,6 @@ mod groups;
 mod materials;
 mod placed_puddles;
 mod puddles;
+mod rings;
 mod skipping;
 mod two_views;
