@@ -197,6 +197,46 @@ fn a_puddle_half_under_cover_rings_in_its_open_half_only() {
 }
 
 #[test]
+fn rings_need_deep_water_that_is_level_and_not_masked() {
+    if !gpu::available() {
+        return;
+    }
+    for source in sources() {
+        let mut plate = Plate::new(source, 0.0);
+        plate.rain(20.0);
+        let deep = plate.moves(-0.5, 0.5);
+        assert!(deep > 0.3, "{source:?}: {deep}");
+        for (colour, depth_m, what) in [
+            (PUDDLE, 0.0008, "thin water"),
+            ([0.0, 1.0, 1.0, 0.0], 0.02, "masked by red"),
+            ([1.0; 4], 0.02, "no water"),
+            ([1.0, 1.0, 0.0, 0.0], 0.02, "always dry by blue"),
+        ] {
+            plate.paint(colour, depth_m);
+            let found = plate.moves(-0.5, 0.5);
+            eprintln!("{source:?}: {what} {found:.3}, deep {deep:.3}");
+            // A film that has no puddle over it still grows.
+            assert!(found < 0.02 * deep + 0.05, "{source:?}, {what}: {found}, deep {deep}");
+        }
+        // Half gathered: in between.
+        plate.paint([1.0, 1.0, 1.0, 0.6], 0.02);
+        let half = plate.moves(-0.5, 0.5);
+        assert!(
+            half > 0.05 * deep && half < 0.9 * deep,
+            "{source:?}: {half}, deep {deep}"
+        );
+
+        let mut leaning = Plate::new(source, 0.61);
+        leaning.rain(20.0);
+        let found = leaning.moves(-0.5, 0.5);
+        assert!(
+            found < 0.02 * deep + 0.05,
+            "{source:?}: {found} on a slope of 35°, level {deep}"
+        );
+    }
+}
+
+#[test]
 fn the_source_of_rings_changes_at_any_time_and_passes_come_and_go() {
     if !gpu::available() {
         return;
