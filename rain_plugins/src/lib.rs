@@ -96,7 +96,7 @@ pub mod prelude {
         Gap, KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, SceneGap, ShowPaint,
         SurfaceWetting, WaterAppearance, WaveNormalMaps,
     };
-    pub use crate::waves::{WaterContact, WaterDisturber, WaveWaterSettings};
+    pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
         RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
     };

@@ -50,7 +50,7 @@ pub enum SkipReason {
     Calm,
     /// The view's air is closed in: no rain can be in sight.
     Indoors,
-    /// Nothing that covers has moved; the kept map is used.
+    /// Nothing has moved; the kept map is used.
     NothingMoved,
     /// No camera carries a `RainView`, or it is inactive.
     NoView,

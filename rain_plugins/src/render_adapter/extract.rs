@@ -119,8 +119,7 @@ pub(super) fn extract_waves(mut main: ResMut<MainWorld>, mut extracted: ResMut<E
             rings.lose();
         } else {
             std::mem::swap(&mut rings.handover, &mut extracted.ripples);
-            let side_m = rings.tile().settings().side_m;
-            extracted.ripple_side_m = if rings.is_off() { 0.0 } else { side_m };
+            extracted.ripple_side_m = if rings.is_off() { 0.0 } else { rings.side_m() };
         }
     }
     if let Some(mut waves) = main.get_resource_mut::<PuddleWaves>() {

@@ -18,6 +18,7 @@ use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, Surf
 use rain_render::masks::{GroundMaps, MaskGpu};
 use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
 use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
+use rain_render::ring_layers::{RingLayerGpu, RingLayersGpu};
 use rain_render::slope_mips::SlopeMipsGpu;
 use rain_render::waves::{WaveTileGpu, WavesGpu};
 
@@ -39,6 +40,8 @@ pub(super) struct RainGpu {
     pub waves: WavesGpu,
     pub ripple_tile: Option<WaveTileGpu>,
     pub wave_tile: Option<WaveTileGpu>,
+    pub ring_layers: RingLayersGpu,
+    pub ring_layer_tile: Option<RingLayerGpu>,
     /// Which levels of standing water the texture holds.
     levels_version: Option<u64>,
     /// Which films of the ground.
@@ -69,6 +72,8 @@ impl FromWorld for RainGpu {
             waves: WavesGpu::new(device),
             ripple_tile: None,
             wave_tile: None,
+            ring_layers: RingLayersGpu::new(device),
+            ring_layer_tile: None,
             levels_version: None,
             films_version: None,
         }
@@ -141,6 +146,11 @@ fn prepare_waves(
         let Some(image) = images.get(id).filter(|_| work.wanted) else {
             continue;
         };
+        if let Some(frame) = &work.layers {
+            let tile = gpu.ring_layer_tile.get_or_insert_with(|| RingLayerGpu::new(device));
+            tile.prepare(device, queue, &gpu.ring_layers, &gpu.slope_mips, &image.texture, frame);
+            continue;
+        }
         let tile = slot.get_or_insert_with(|| WaveTileGpu::new(device, &gpu.waves, &gpu.slope_mips, &image.texture));
         tile.prepare(device, queue, &gpu.waves, &work.frame);
     }
@@ -343,6 +353,10 @@ pub(super) fn prepare_rain(
     report.gpu_memory(
         textures.map(|image| texture_bytes(&image.texture)).sum::<usize>()
             + tiles.map(|tile| tile.memory_bytes() as usize).sum::<usize>()
+            + gpu
+                .ring_layer_tile
+                .as_ref()
+                .map_or(0, |tile| tile.memory_bytes() as usize)
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>(),
     );
 }

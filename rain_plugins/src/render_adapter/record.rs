@@ -55,9 +55,11 @@ pub(super) fn water(gpu: Res<RainGpu>, waves: Res<ExtractedWaves>, report: Res<R
         (&gpu.ripple_tile, &waves.ripples, PassName::Ripples, "rain_ripples"),
         (&gpu.wave_tile, &waves.waves, PassName::Waves, "rain_waves"),
     ] {
-        let Some(tile) = tile.as_ref().filter(|_| work.wanted) else {
+        let tile = tile.as_ref().filter(|_| work.layers.is_none());
+        let layers = gpu.ring_layer_tile.as_ref().filter(|_| work.layers.is_some());
+        if !work.wanted || (tile.is_none() && layers.is_none()) {
             continue;
-        };
+        }
         let recorder = ctx.diagnostic_recorder();
         let recorder = recorder.as_deref();
         let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -65,7 +67,12 @@ pub(super) fn water(gpu: Res<RainGpu>, waves: Res<ExtractedWaves>, report: Res<R
             timestamp_writes: None,
         });
         let span = recorder.pass_span(&mut pass, label);
-        tile.encode(&mut pass, &gpu.waves, &gpu.slope_mips);
+        if let Some(tile) = tile {
+            tile.encode(&mut pass, &gpu.waves, &gpu.slope_mips);
+        }
+        if let Some(layers) = layers {
+            layers.encode(&mut pass, &gpu.ring_layers, &gpu.slope_mips);
+        }
         span.end(&mut pass);
         drop(pass);
         report.recorded(pass_name);

@@ -436,6 +436,20 @@ pub struct RainSettings {
     /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0005, 0.25].
     /// Default: 1/60.
     pub exposure_s: f64,
+    /// Where rings on water come from. Default: `Drops`.
+    pub rings: Rings,
+}
+
+/// Where rings on water come from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Rings {
+    /// Simulated from the drops of the rain.
+    #[default]
+    Drops,
+    /// Procedural, as many and as rough as the rain makes them.
+    Layers,
+    /// Procedural, as their source has them (Lagarde 2013).
+    Lagarde,
 }
 
 impl Default for RainSettings {
@@ -445,6 +459,7 @@ impl Default for RainSettings {
             streak_budget: 30_000,
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
+            rings: Rings::default(),
         }
     }
 }

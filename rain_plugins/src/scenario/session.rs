@@ -12,13 +12,14 @@ use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use image::RgbImage;
 use rain_ecs::prelude::*;
 
-use super::file::{Mask, Scenario};
+use super::file::{Mask, Rings, Scenario};
 use super::masks::{texel_from_coverage, texel_from_depth, texel_from_water};
 use super::run::RunError;
 use super::stage::{self, Stage};
 use super::{headless, probe};
 use crate::RainPlugins;
 use crate::report::{RainReport, Report as PassReport};
+use crate::waves::{RingLayerSettings, RingSource, WaveWaterSettings};
 
 /// Time between the frames that warm a view up. Units: ns.
 const FRAME_NS: u64 = 16_666_667;
@@ -47,6 +48,14 @@ impl Capture {
     #[must_use]
     pub fn mask(&self, mask: Mask) -> Option<&[u16]> {
         self.masks.iter().find(|(m, _)| *m == mask).map(|(_, t)| t.as_slice())
+    }
+}
+
+fn ring_source(rings: Rings) -> RingSource {
+    match rings {
+        Rings::Drops => RingSource::Drops,
+        Rings::Layers => RingSource::Layers(RingLayerSettings::default()),
+        Rings::Lagarde => RingSource::Layers(RingLayerSettings::lagarde()),
     }
 }
 
@@ -81,7 +90,10 @@ impl Session {
         app.insert_resource(RainSeed(scenario.seed));
         app.init_resource::<Pictured>().init_resource::<Returned>();
         if scenario.rain.enabled {
-            app.add_plugins(RainPlugins);
+            app.add_plugins(RainPlugins).insert_resource(WaveWaterSettings {
+                ring_source: ring_source(scenario.rain.rings),
+                ..default()
+            });
         }
         headless::finish(&mut app);
         stage::build(&mut app, scenario, assets)?;

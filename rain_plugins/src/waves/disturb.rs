@@ -114,13 +114,11 @@ mod tests {
 
     /// A pond of 2 cm over level ground for x > 0.
     fn pond() -> WaterLevels {
-        let mut levels = WaterLevels {
-            corner_m: DVec2::splat(-100.0),
-            cell_m: 100.0,
-            cells: UVec2::splat(2),
-            ground_m: Arc::new(vec![0.0; 4]),
-            ..default()
-        };
+        let mut levels = WaterLevels::default();
+        levels.corner_m = DVec2::splat(-100.0);
+        levels.cell_m = 100.0;
+        levels.cells = UVec2::splat(2);
+        levels.ground_m = Arc::new(vec![0.0; 4]);
         levels.set_levels(vec![NO_WATER_M, 0.02, NO_WATER_M, 0.02]);
         levels
     }

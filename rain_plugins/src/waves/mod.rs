@@ -1,13 +1,14 @@
 //! Water that moves: rings under rain, and waves that wheels, feet and other things make in puddles near the view.
 //!
-//! Rings are a small tile of water that repeats over the world, into which the drops of the present rain fall
-//! ([`RippleTile`]). Waves are a tile of real puddles, with their shores, that follows the view ([`WaveTile`]): they run
-//! while something disturbs them and sleep when calm, out of sight or dry. Both are seen only: no state depends on them.
+//! Rings are a small tile of water that repeats over the world: simulated, with the drops of the present rain falling
+//! into it ([`RippleTile`]), or procedural ([`RingSource::Layers`]). Waves are a tile of real puddles, with their shores,
+//! that follows the view ([`WaveTile`]): they run while something disturbs them and sleep when calm, out of sight or dry.
+//! Both are seen only: no state depends on them.
 //!
 //! | file | concept |
 //! |---|---|
 //! | `disturb.rs` | [`WaterDisturber`]: what moves the water; [`WaterContact`]: the water that it stands in |
-//! | `rings.rs` | the tile of rings |
+//! | `rings.rs` | the tile of rings, and where they come from |
 //! | `tile.rs` | the tile of puddles |
 
 mod disturb;
@@ -15,10 +16,12 @@ mod rings;
 mod tile;
 
 use bevy::prelude::*;
+use rain_render::ring_layers::RingLayerFrame;
 use rain_render::waves::{RippleSettings, RippleTile, WaveFrame, WaveTile, WaveTileSettings};
 
 pub use disturb::{WaterContact, WaterDisturber};
-pub use rings::RainRings;
+pub use rain_core::waves::{CircleSettings, RingGrowth, RingIntensity, RingLayerSettings};
+pub use rings::{RainRings, RingSource};
 pub use tile::PuddleWaves;
 
 use crate::render_adapter::RenderApp;
@@ -26,7 +29,8 @@ use crate::schedule::RainViewSystems;
 use crate::surface::WaterLevels;
 
 /// Settings of rings and waves. Those of the tiles take effect when the tile is made: when the app starts, or when it is
-/// first switched on; the switches at any time.
+/// first switched on; the switches and `ring_source`
+/// at any time.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default)]
 #[reflect(Resource, Default)]
 pub struct WaveWaterSettings {
@@ -36,6 +40,9 @@ pub struct WaveWaterSettings {
     /// The tile of rings.
     #[reflect(ignore)]
     pub rings: RippleSettings,
+    /// Where rings come from. What does not validate is named in the log, and the last good source stays.
+    #[reflect(ignore)]
+    pub ring_source: RingSource,
     /// No interactive water: wheels and feet leave puddles still, touch no water ([`WaterContact`]), and no step of the
     /// waves is worked out.
     pub no_waves: bool,
@@ -47,6 +54,8 @@ pub struct WaveWaterSettings {
 #[derive(Debug, Default)]
 pub(crate) struct Handover {
     pub frame: WaveFrame,
+    /// Procedural rings in place of the frame.
+    pub layers: Option<RingLayerFrame>,
     pub wanted: bool,
 }
 
@@ -67,7 +76,9 @@ impl Plugin for WavesPlugin {
                 PostUpdate,
                 (
                     create_tiles.run_if(resource_changed::<WaveWaterSettings>),
-                    rings::rain_on_water.run_if(resource_exists::<RainRings>),
+                    (rings::choose_rings, rings::rain_on_water)
+                        .chain()
+                        .run_if(resource_exists::<RainRings>),
                     tile::move_water.run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
                 )
                     .in_set(RainViewSystems::Views),

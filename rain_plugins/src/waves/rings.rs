@@ -2,18 +2,40 @@
 
 use bevy::prelude::*;
 use rain_core::rainfall::DropSizes;
+use rain_core::waves::RingLayerSettings;
 use rain_ecs::prelude::*;
+use rain_render::ring_layers::RingLayerTile;
 use rain_render::waves::RippleTile;
 
 use super::{Handover, WaveWaterSettings};
 use crate::rainfall::RainView;
+use crate::render_adapter::{WetMaterial, slope_image};
 use crate::report::{PassName, RainReport, SkipReason};
-use crate::surface::{SurfaceState, WaterAppearance, WaterLevels};
+use crate::surface::{NoisePuddles, PuddlePaint, SurfaceState, WaterAppearance, WaterImages, WaterLevels};
+
+/// Where rings come from. Both make a tile of slopes that repeats over the world.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum RingSource {
+    /// Each drop of the rain's size distribution presses its ring into a tile of water that is simulated.
+    #[default]
+    Drops,
+    /// Procedural: four layers of a texture of circles. Cheaper in heavy rain, and of the same roughness; rings do not
+    /// meet each other.
+    Layers(RingLayerSettings),
+}
 
 /// The tile of water that rain falls into.
 #[derive(Resource, Debug)]
 pub struct RainRings {
     tile: RippleTile,
+    /// The layers, once they have been chosen.
+    layers: Option<RingLayerTile>,
+    /// The source in force, and the one asked for last.
+    source: RingSource,
+    asked: RingSource,
+    /// What each source draws into.
+    drops_map: Option<Handle<Image>>,
+    layers_map: Option<Handle<Image>>,
     /// Time up to which it has been advanced. Units: ns.
     now_ns: Option<u64>,
     off: bool,
@@ -24,13 +46,18 @@ impl RainRings {
     pub(super) fn new(tile: RippleTile) -> Self {
         Self {
             tile,
+            layers: None,
+            source: RingSource::Drops,
+            asked: RingSource::Drops,
+            drops_map: None,
+            layers_map: None,
             now_ns: None,
             off: false,
             handover: Handover::default(),
         }
     }
 
-    /// The tile.
+    /// The tile of simulated rings.
     #[must_use]
     pub fn tile(&self) -> &RippleTile {
         &self.tile
@@ -41,10 +68,88 @@ impl RainRings {
         self.off
     }
 
+    /// The source in force: the one asked for last that was valid.
+    #[must_use]
+    pub fn source(&self) -> &RingSource {
+        &self.source
+    }
+
+    /// The procedural rings, where they are the source in force.
+    #[must_use]
+    pub fn layers(&self) -> Option<&RingLayerTile> {
+        self.layers.as_ref().filter(|_| self.source != RingSource::Drops)
+    }
+
+    /// Side of the tile that is shown. Units: m.
+    #[must_use]
+    pub fn side_m(&self) -> f64 {
+        self.layers()
+            .map_or(self.tile.settings().side_m, |layers| layers.layers().settings().side_m)
+    }
+
     /// Forgets all rings: the GPU has lost them.
     pub(crate) fn lose(&mut self) {
         if let Ok(tile) = RippleTile::new(self.tile.settings()) {
             self.tile = tile;
+        }
+        if let Some(layers) = &mut self.layers {
+            layers.lose();
+        }
+    }
+
+    fn is_idle(&self) -> bool {
+        match self.layers() {
+            Some(layers) => layers.is_calm() && !layers.wants_pass(),
+            None => self.tile.is_calm() && !self.tile.wants_pass(),
+        }
+    }
+}
+
+/// Changes the source when another is asked for, and with it the texture that wet materials read.
+pub(super) fn choose_rings(
+    mut rings: ResMut<RainRings>,
+    settings: Res<WaveWaterSettings>,
+    shown: Option<ResMut<WaterImages>>,
+    mut images: ResMut<Assets<Image>>,
+    materials: Option<ResMut<Assets<WetMaterial>>>,
+) {
+    let Some(mut shown) = shown else { return };
+    let rings = &mut *rings;
+    // Once for each change: what is not a number never equals itself.
+    if settings.is_changed() && rings.asked != settings.ring_source {
+        rings.asked = settings.ring_source;
+        match &settings.ring_source {
+            RingSource::Drops => rings.source = RingSource::Drops,
+            RingSource::Layers(layers) => match RingLayerTile::new(layers) {
+                Ok(tile) => {
+                    rings.layers = Some(tile);
+                    rings.layers_map = Some(images.add(slope_image(layers.cells)));
+                    rings.source = rings.asked;
+                }
+                Err(error) => error!("rings stay as they are: {error}"),
+            },
+        }
+        // What stands in the other tile is old.
+        rings.tile.reset();
+        rings.now_ns = None;
+    }
+    let cells = rings.tile.settings().cells;
+    let wanted = match rings.source {
+        RingSource::Drops => {
+            let map = rings.drops_map.get_or_insert_with(|| images.add(slope_image(cells)));
+            Some(&*map)
+        }
+        RingSource::Layers(_) => rings.layers_map.as_ref(),
+    };
+    let Some(wanted) = wanted.filter(|map| shown.ripples != **map) else {
+        return;
+    };
+    shown.ripples = wanted.clone();
+    let Some(mut materials) = materials else { return };
+    let ids: Vec<_> = materials.ids().collect();
+    for id in ids {
+        if let Some(mut material) = materials.get_mut(id) {
+            material.extension.ripples = wanted.clone();
         }
     }
 }
@@ -58,7 +163,18 @@ pub(super) fn seen_ns(clock: &RainClock) -> u64 {
 /// Units: ns.
 pub(super) const FORGOTTEN_NS: u64 = 30_000_000_000;
 
-/// Lets the drops of the present rain fall onto the tile.
+/// Whether any puddle that an artist has placed may hold water.
+fn placed_water<'a>(
+    artist: Vec4,
+    paints: impl Iterator<Item = &'a PuddlePaint>,
+    mut noises: impl Iterator<Item = &'a NoisePuddles>,
+) -> bool {
+    let (holes, puddles) = (artist.y, artist.z);
+    let mut painted = paints.map(|p| p.fixed || puddles.max(p.least_flood) > 0.0 || (p.height_map && holes > 0.0));
+    painted.any(|water| water) || noises.any(|noise| noise.level.unwrap_or(puddles) > 0.0)
+}
+
+/// Lets the present rain make its rings.
 pub(super) fn rain_on_water(
     mut rings: ResMut<RainRings>,
     clock: Res<RainClock>,
@@ -69,10 +185,13 @@ pub(super) fn rain_on_water(
     settings: Res<WaveWaterSettings>,
     report: Res<RainReport>,
     views: Query<&Camera, With<RainView>>,
+    paints: Query<&PuddlePaint>,
+    noises: Query<&NoisePuddles>,
 ) {
     let rings = &mut *rings;
     rings.off = settings.no_rings;
     rings.handover.wanted = false;
+    rings.handover.layers = None;
     let now = seen_ns(&clock);
     if rings.now_ns.is_some_and(|before| now < before) {
         // The clock was set back: the drops of what is to come have not fallen yet.
@@ -84,15 +203,16 @@ pub(super) fn rain_on_water(
         rings.tile.reset();
     }
     let seen = views.iter().any(|c| c.is_active);
+    let artist = surface.as_ref().map_or(Vec4::ZERO, |s| s.artist);
     let reason = if !seen {
         Some(SkipReason::NoView)
     } else if rings.off || appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
         Some(SkipReason::Disabled)
     } else if !surface.is_some_and(|s| s.wet) {
         Some(SkipReason::Dry)
-    } else if !field.is_raining() && rings.tile.is_calm() && !rings.tile.wants_pass() {
+    } else if !field.is_raining() && rings.is_idle() {
         Some(SkipReason::NoRain)
-    } else if !levels.is_some_and(|l| l.any_water()) {
+    } else if !levels.is_some_and(|l| l.any_water()) && !placed_water(artist, paints.iter(), noises.iter()) {
         Some(SkipReason::NoWater)
     } else {
         None
@@ -102,11 +222,63 @@ pub(super) fn rain_on_water(
         return;
     }
     let sizes = DropSizes::from(*field.spectrum());
-    rings.tile.set_rain(&sizes);
     rings.now_ns = Some(now);
-    rings.tile.advance(elapsed);
-    if rings.tile.wants_pass() {
-        rings.tile.take(&mut rings.handover.frame);
-        rings.handover.wanted = true;
+    if rings.source == RingSource::Drops {
+        rings.tile.set_rain(&sizes);
+        rings.tile.advance(elapsed);
+        if rings.tile.wants_pass() {
+            rings.tile.take(&mut rings.handover.frame);
+            rings.handover.wanted = true;
+        }
+    } else if let Some(layers) = &mut rings.layers {
+        layers.set_rain(&sizes);
+        layers.advance(now, elapsed);
+        if layers.wants_pass() {
+            rings.handover.layers = Some(layers.take());
+            rings.handover.wanted = true;
+        } else {
+            report.skipped(PassName::Ripples, SkipReason::NothingMoved);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn placed_puddles_hold_water_by_their_levels() {
+        let water = |artist: Vec4, paint: &[PuddlePaint], noise: &[NoisePuddles]| {
+            placed_water(artist, paint.iter(), noise.iter())
+        };
+        let (dry, wet) = (Vec4::ZERO, Vec4::new(1.0, 0.0, 0.2, 1.0));
+        let paint = PuddlePaint::default();
+        assert!(!water(wet, &[], &[]), "none placed");
+        assert!(!water(dry, &[paint.clone()], &[NoisePuddles::default()]));
+        assert!(water(wet, &[paint.clone()], &[]) && water(wet, &[], &[NoisePuddles::default()]));
+        let holes = Vec4::new(1.0, 0.1, 0.0, 1.0);
+        assert!(water(holes, &[paint.clone()], &[]));
+        let plain = PuddlePaint {
+            height_map: false,
+            ..paint.clone()
+        };
+        assert!(!water(holes, &[plain.clone()], &[]));
+        for paint in [
+            PuddlePaint {
+                fixed: true,
+                ..plain.clone()
+            },
+            PuddlePaint {
+                least_flood: 0.1,
+                ..plain
+            },
+        ] {
+            assert!(water(dry, &[paint], &[]));
+        }
+        let level = |level: f32| NoisePuddles {
+            level: Some(level),
+            ..default()
+        };
+        assert!(water(dry, &[], &[level(0.3)]) && !water(wet, &[], &[level(0.0)]));
     }
 }

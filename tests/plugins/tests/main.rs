@@ -13,6 +13,7 @@ mod pond;
 mod puddle_look;
 mod puddles;
 mod rewind;
+mod rings;
 mod scenes;
 mod skipping;
 mod two_views;
