@@ -36,7 +36,8 @@ fn decade(ns: f64) -> String {
     format!("{value:.0} {unit}")
 }
 
-/// Draws the study: numbered points on logarithmic axes, the default in its own colour, and the list of names.
+/// Draws the study: numbered points on logarithmic axes, the default in its own colour over the others, and the list of
+/// names.
 ///
 /// An error of 0 is drawn a decade under the smallest other one.
 ///
@@ -98,7 +99,10 @@ pub fn draw(study: &Study, times: &[Time], path: &Path) -> Result<(), String> {
             .y_label_formatter(&|error| format!("{error:.0e}"))
             .draw()?;
         let centred = Pos::new(HPos::Center, VPos::Center);
-        for (index, (variant, point)) in study.variants.iter().zip(&points).enumerate() {
+        // The default over those that it may lie on.
+        let mut order: Vec<_> = study.variants.iter().zip(&points).enumerate().collect();
+        order.sort_by_key(|(_, (variant, _))| variant.default);
+        for (index, (variant, point)) in order {
             let colour = if variant.default { DEFAULT } else { OTHER };
             let place = chart.backend_coord(point);
             root.draw(&Circle::new(place, 10, colour.filled()))?;

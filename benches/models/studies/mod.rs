@@ -2,14 +2,18 @@
 
 mod basins;
 mod canopy;
+mod cover;
 mod drop;
 mod fall;
 mod fall_speed;
+mod ground;
 mod hash;
 mod light;
+mod ripples;
 mod spectrum;
 mod splash;
 mod surface;
+mod wave_grid;
 mod waves;
 mod weather;
 mod wheels;
@@ -32,6 +36,20 @@ pub fn all() -> Vec<Study> {
         waves::studies(),
         splash::studies(),
         wheels::studies(),
+        grids(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Those of maps and tiles: what a cell costs and what it errs.
+pub fn grids() -> Vec<Study> {
+    [
+        cover::studies(),
+        ground::studies(),
+        wave_grid::studies(),
+        ripples::studies(),
     ]
     .into_iter()
     .flatten()

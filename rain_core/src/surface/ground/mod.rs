@@ -27,6 +27,10 @@
 //! past a roof's edge is kept off the cell behind it and wets what stands over that cell, not the roof that caught it.
 //! A cell is under water as a whole.
 //!
+//! Cells of 0.25 m against those of 1/64 m, in 20 m of street with hollows of 0.6 to 1.5 m radius after a shower: levels
+//! of puddles within 2 mm (rms), their water within 15 % of the mean, the depth at a place 0.1 mm off in the mean; cells
+//! of 0.5 m have their water wrong by most of it.
+//!
 //! Each cell sees the mean conditions of its interval (default 1 s), so against advancing every tick films are up to one
 //! interval late and basins up to three; within that delay they agree to 2e-3 of what they hold even while the rain rises
 //! from 0 to 400 mm/h in four seconds, and once all has come to rest to 1e-6.

@@ -23,7 +23,7 @@ fn variance(gpu: &Device, rings: &Rings) -> f64 {
 #[test]
 fn slopes_are_as_rough_as_campbells_theorem_says() {
     let Some(gpu) = device() else { return };
-    // The cells of the default, on a quarter of its tile.
+    // Cells twice as long as the default's: half of the steps.
     let settings = RippleSettings {
         cells: 128,
         side_m: 1.0,
