@@ -18,7 +18,7 @@ fn height(x: f32, z: f32) -> f32 {
     0.01 * x - 0.06 * share * share
 }
 
-pub fn hollow_ground() -> Mesh {
+fn hollow_ground() -> Mesh {
     let at = |i: u32| (i as f32 - 0.5 * CELLS as f32) * CELL_M;
     let mut positions = Vec::new();
     let mut normals = Vec::new();
@@ -49,7 +49,7 @@ pub fn hollow_ground() -> Mesh {
 }
 
 /// The ground with a hollow under a dry sky, and its weather.
-pub fn hollow() -> (TestApp, Entity) {
+fn hollow() -> (TestApp, Entity) {
     let mut test = TestApp::new([160, 90], true);
     let mesh = test.world().resource_mut::<Assets<Mesh>>().add(hollow_ground());
     let material = test
