@@ -2,6 +2,7 @@
 
 mod common;
 mod cover;
+mod press;
 mod queries;
 mod snapshot;
 mod street;

@@ -93,8 +93,8 @@ pub mod prelude {
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::surface::{
-        KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint, SurfaceWetting,
-        WaterAppearance,
+        GroundMapSettings, KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint,
+        SurfaceWetting, WaterAppearance,
     };
     pub use crate::waves::{WaterDisturber, WaveWaterSettings};
     pub use crate::{

@@ -33,7 +33,9 @@ pub const LIBRARIES: &[Library] = library![
     "standing_water",
     "placed_water",
     "slopes",
-    "waves"
+    "waves",
+    "water_column",
+    "water_map"
 ];
 
 /// A pass's own source.
@@ -58,7 +60,8 @@ pub const PASSES: &[Pass] = passes![
     "mask",
     "slope_mips",
     "reflection_mips",
-    "waves"
+    "waves",
+    "water_map"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:

@@ -12,4 +12,5 @@ pub mod masks;
 pub mod rainfall;
 pub mod reflection;
 pub mod slope_mips;
+pub mod water_map;
 pub mod waves;

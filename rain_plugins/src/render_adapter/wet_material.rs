@@ -56,6 +56,9 @@ pub struct WetSurface {
     /// Films and pores of the ground.
     #[texture(109)]
     pub films: Handle<Image>,
+    /// The same around the view, finer.
+    #[texture(110, dimension = "2d_array")]
+    pub map: Handle<Image>,
 }
 
 impl MaterialExtension for WetSurface {
@@ -85,7 +88,16 @@ impl Plugin for WetMaterialPlugin {
         source.push_str(&compose::constants());
         source.push_str(compose::TYPES);
         for library in compose::LIBRARIES {
-            if ["hash", "cover", "wetness", "standing_water", "placed_water"].contains(&library.name) {
+            if [
+                "hash",
+                "cover",
+                "wetness",
+                "standing_water",
+                "placed_water",
+                "water_map",
+            ]
+            .contains(&library.name)
+            {
                 source.push_str(library.source);
             }
         }

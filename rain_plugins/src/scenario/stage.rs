@@ -388,7 +388,10 @@ pub(super) fn dress(app: &mut App, scenario: &Scenario) {
                 let scale = world.get::<GlobalTransform>(entity).map_or(1.0, |t| t.scale().x);
                 let radius_m = world.get::<OnPath>(vehicle).map_or(0.3, |v| v.wheel_radius_m as f32) * scale;
                 let disturber = WaterDisturber { radius_m, ..default() };
-                world.entity_mut(entity).insert((Wheel { vehicle, rest }, disturber));
+                let press = FilmPress::wheel(radius_m);
+                world
+                    .entity_mut(entity)
+                    .insert((Wheel { vehicle, rest }, disturber, press));
             }
         }
     }
@@ -407,19 +410,51 @@ pub(super) fn dress(app: &mut App, scenario: &Scenario) {
     }
 }
 
+impl OnPath {
+    fn pose_at(&self, time_s: f64) -> Transform {
+        let pose = self.path.at(time_s);
+        Transform {
+            translation: Vec3::from_array(pose.position.map(|v| v as f32)),
+            rotation: Quat::from_rotation_y(pose.yaw_rad as f32),
+            scale: Vec3::splat(self.scale),
+        }
+    }
+}
+
+/// Time of the frame that is being made. Units: s.
+#[derive(Resource, Default)]
+struct FrameTime(f64);
+
+/// Has vehicles move in the simulation's ticks too: what they do to the ground does not depend on frames.
+pub(super) fn move_in_ticks(app: &mut App) {
+    app.init_resource::<FrameTime>()
+        .add_systems(RainTick, pose_for_tick.in_set(RainSystems::Input))
+        .add_systems(Update, pose_for_frame);
+}
+
+fn pose_for_tick(clock: Res<RainClock>, mut vehicles: Query<(&OnPath, &mut Transform)>) {
+    for (vehicle, mut transform) in &mut vehicles {
+        transform.set_if_neq(vehicle.pose_at(clock.now_s()));
+    }
+}
+
+fn pose_for_frame(time: Res<FrameTime>, mut vehicles: Query<(&OnPath, &mut Transform)>) {
+    for (vehicle, mut transform) in &mut vehicles {
+        transform.set_if_neq(vehicle.pose_at(time.0));
+    }
+}
+
 /// Puts vehicles, wheels and camera where they are at `time_s`.
 pub(super) fn pose(app: &mut App, time_s: f64) {
     let world = app.world_mut();
+    if let Some(mut frame) = world.get_resource_mut::<FrameTime>() {
+        frame.0 = time_s;
+    }
     let mut turned = Vec::new();
     for (entity, vehicle, mut transform) in world.query::<(Entity, &OnPath, &mut Transform)>().iter_mut(world) {
         let pose = vehicle.path.at(time_s);
-        let next = Transform {
-            translation: Vec3::from_array(pose.position.map(|v| v as f32)),
-            rotation: Quat::from_rotation_y(pose.yaw_rad as f32),
-            scale: Vec3::splat(vehicle.scale),
-        };
         // A vehicle that stands must not count as moved.
-        transform.set_if_neq(next);
+        transform.set_if_neq(vehicle.pose_at(time_s));
         turned.push((entity, wheel_angle_rad(pose.distance_m, vehicle.wheel_radius_m)));
     }
     for (wheel, mut transform) in world.query::<(&Wheel, &mut Transform)>().iter_mut(world) {

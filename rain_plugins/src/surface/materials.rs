@@ -10,13 +10,14 @@ use rain_ecs::prelude::*;
 use super::dynamic::{OwnWetness, give_own_wetness};
 use super::geometry::{HandedOver, MovesInRain, hand_over};
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
+use super::map::{GroundMap, GroundMapSettings, create_map, follow_map};
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirror};
 use super::state::{SurfaceState, create_state, follow_weather};
 use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::CoverMap;
 use crate::render_adapter::{
-    RenderApp, WetMaterial, WetSurface, film_image, level_image, reflection_image, slope_image,
+    RenderApp, WetMaterial, WetSurface, film_image, level_image, map_image, reflection_image, slope_image,
 };
 use crate::schedule::RainViewSystems;
 
@@ -110,15 +111,22 @@ impl Plugin for WetSurfacePlugin {
             .init_resource::<WaterLevels>()
             .init_resource::<LevelsFromGround>()
             .init_resource::<GroundFilms>()
+            .init_resource::<GroundMapSettings>()
             .init_resource::<HandedOver>()
             .register_type::<MovesInRain>()
-            .add_systems(Startup, (create_state, create_images))
+            .add_systems(Startup, (create_state, create_map, create_images).chain())
             .add_systems(
                 PostUpdate,
                 (
                     give_own_wetness,
                     check_appearance.run_if(resource_changed::<WaterAppearance>),
-                    (follow_weather, follow_ground, follow_films, aim_mirror)
+                    (
+                        follow_weather,
+                        follow_ground,
+                        follow_films,
+                        follow_map.run_if(resource_exists::<GroundMap>),
+                        aim_mirror,
+                    )
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
@@ -154,10 +162,16 @@ fn check_appearance(appearance: Res<WaterAppearance>) {
     }
 }
 
-fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, mirror: Res<ReflectionSize>) {
+fn create_images(
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+    mirror: Res<ReflectionSize>,
+    map: Option<Res<GroundMap>>,
+) {
     commands.insert_resource(WaterImages {
         levels: images.add(level_image(LEVEL_TEXELS)),
         films: images.add(film_image(LEVEL_TEXELS)),
+        map: images.add(map_image(map.map(|map| *map.map().settings()))),
         ripples: images.add(slope_image(256)),
         waves: images.add(slope_image(256)),
         reflection: images.add(reflection_image(mirror.0)),
@@ -258,6 +272,7 @@ fn wet_meshes(
                     params: surface.handles.params.clone(),
                     levels: water.levels.clone(),
                     films: water.films.clone(),
+                    map: water.map.clone(),
                     ripples: water.ripples.clone(),
                     waves: water.waves.clone(),
                     reflection: water.reflection.clone(),

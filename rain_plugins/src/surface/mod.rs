@@ -7,6 +7,7 @@
 mod dynamic;
 mod geometry;
 mod ground;
+mod map;
 mod materials;
 mod paint;
 mod reflection;
@@ -17,6 +18,8 @@ pub use dynamic::OwnWetness;
 pub use geometry::MovesInRain;
 pub(crate) use geometry::triangles_of;
 pub use ground::{GroundFilms, LevelsFromGround};
+pub(crate) use map::MapHandover;
+pub use map::{GroundMap, GroundMapSettings};
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
 pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
 pub use reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize};

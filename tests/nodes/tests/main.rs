@@ -10,5 +10,6 @@ mod reflection;
 mod shader_functions;
 mod slope_mips;
 mod water;
+mod water_map;
 mod waves;
 mod wet_albedo;

@@ -7,3 +7,4 @@ mod placed_puddles;
 mod puddles;
 mod skipping;
 mod two_views;
+mod water_map;

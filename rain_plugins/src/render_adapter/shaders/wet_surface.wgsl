@@ -10,7 +10,7 @@
 #import rain::surface::{
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
     rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
-    rain_painted_puddle_water, rain_crack_water, rain_puddle_noise,
+    rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_water_map,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -49,6 +49,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(109) var rain_film_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(110) var rain_near_map: texture_2d_array<f32>;
 
 // Perceptual roughness of still water: a mirror, as far as lamps of finite size let it be one.
 const WATER_ROUGHNESS: f32 = 0.045;
@@ -99,7 +100,8 @@ fn remembered(p: vec3<f32>) -> vec3<f32> {
     if (levels.films < 0.5 || any(cell < vec2<f32>(0.5)) || any(cell > levels.cells - 0.5)) {
         return vec3<f32>(0.0);
     }
-    let texel = textureSampleLevel(rain_film_map, rain_sampler, cell / vec2<f32>(textureDimensions(rain_film_map)), 0.0);
+    let far = textureSampleLevel(rain_film_map, rain_sampler, cell / vec2<f32>(textureDimensions(rain_film_map)), 0.0);
+    let texel = rain_water_map(rain_near_map, rain_sampler, rain_surface.map, p.xz, far);
     let above = abs(p.y - levels.base - texel.z);
     return vec3<f32>(texel.y, texel.x, 1.0 - smoothstep(0.2, 0.35, above));
 }
