@@ -57,8 +57,8 @@ pub mod prelude {
     pub use crate::snapshot::{RainSnapshot, SnapshotAppExt, SnapshotError};
     pub use crate::state_hash::{HashState, StateHashAppExt, StateHasher, state_hash};
     pub use crate::surface::{
-        DynamicWetness, SurfaceGround, SurfaceGroundPlugin, SurfaceMaterial, SurfaceScene, SurfaceSettings,
-        surface_class_of_name,
+        DynamicWetness, FilmPress, FilmPresses, SurfaceGround, SurfaceGroundPlugin, SurfaceMaterial, SurfaceScene,
+        SurfaceSettings, surface_class_of_name,
     };
     pub use crate::weather::{
         ActiveWeather, ArtistControls, WaterByHand, Weather, WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState,

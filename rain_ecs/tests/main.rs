@@ -3,6 +3,7 @@
 mod common;
 mod cover;
 mod history;
+mod press;
 mod queries;
 mod snapshot;
 mod street;

@@ -93,8 +93,8 @@ pub mod prelude {
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::surface::{
-        Gap, KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, SceneGap, ShowPaint,
-        SurfaceWetting, WaterAppearance, WaveNormalMaps,
+        Gap, GroundMapSettings, KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint,
+        SceneGap, ShowPaint, SurfaceWetting, WaterAppearance, WaveNormalMaps,
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{

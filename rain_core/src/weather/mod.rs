@@ -13,11 +13,13 @@
 //! | `film_course.rs` | the film under constant supply and drain in closed form |
 //! | `film_flow.rs` | the film above the texture: supply against drain |
 //! | `column.rs` | pores and film of one surface, the physical way |
+//! | `column_f32.rs` | the same in single precision, for grids |
 //! | `artist.rs` | wetness and water levels, the artists' way |
 //! | `surfaces.rs` | all of these together, advanced over conditions or a timeline |
 
 mod artist;
 mod column;
+mod column_f32;
 mod conditions;
 mod evaporation;
 mod film_course;
@@ -32,6 +34,7 @@ mod timeline;
 
 pub use artist::{ArtistLaw, ArtistLevel, ArtistSettings, ArtistState, relative_intensity};
 pub use column::{ColumnForcing, ColumnLedger, MAX_INTERVAL_S, MAX_SURFACE_RATE_MM_H, SurfaceColumn};
+pub use column_f32::{ColumnF32, ColumnRules};
 pub use conditions::WeatherConditions;
 pub use evaporation::{
     dalton_evaporation_mm_h, dew_point_c, drying_time_s, penman_evaporation_mm_h, saturation_vapour_pressure_pa,

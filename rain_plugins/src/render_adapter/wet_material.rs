@@ -56,6 +56,9 @@ pub struct WetSurface {
     /// Films and pores of the ground.
     #[texture(109)]
     pub films: Handle<Image>,
+    /// The same around the view, finer.
+    #[texture(110, dimension = "2d_array")]
+    pub map: Handle<Image>,
     /// Normal maps of waves, where there are any.
     #[texture(114)]
     pub wave_normals: Option<Handle<Image>>,
@@ -99,6 +102,7 @@ impl Plugin for WetMaterialPlugin {
                 "wind_waves",
                 "placed_water",
                 "ground_memory",
+                "water_map",
             ]
             .contains(&library.name)
             {

@@ -102,6 +102,7 @@ impl Session {
         super::mips::add_mips(&mut app);
         if scenario.rain.enabled {
             stage::weather(&mut app, scenario)?;
+            stage::move_in_ticks(&mut app);
         }
         stage::pose(&mut app, 0.0);
         // One still update: the app's own systems see the dressed scene before time runs.

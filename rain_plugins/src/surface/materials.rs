@@ -10,13 +10,14 @@ use rain_ecs::prelude::*;
 use super::dynamic::{OwnWetness, give_own_wetness};
 use super::geometry::SceneGeometryPlugin;
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
+use super::map::{GroundMap, GroundMapSettings, create_map, follow_map};
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirrors};
 use super::state::{SurfaceState, create_state, follow_weather};
 use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels, WaveNormalMaps};
 use crate::cover::CoverMap;
 use crate::render_adapter::{
-    RenderApp, WetMaterial, WetSurface, film_image, level_image, reflection_image, slope_image,
+    RenderApp, WetMaterial, WetSurface, film_image, level_image, map_image, reflection_image, slope_image,
 };
 use crate::schedule::RainViewSystems;
 
@@ -122,14 +123,21 @@ impl Plugin for WetSurfacePlugin {
             .init_resource::<WaterLevels>()
             .init_resource::<LevelsFromGround>()
             .init_resource::<GroundFilms>()
-            .add_systems(Startup, (create_state, create_images))
+            .init_resource::<GroundMapSettings>()
+            .add_systems(Startup, (create_state, create_map, create_images).chain())
             .add_systems(
                 PostUpdate,
                 (
                     give_own_wetness,
                     check_appearance.run_if(resource_changed::<WaterAppearance>),
                     follow_wave_maps.run_if(resource_changed::<WaveNormalMaps>),
-                    (follow_weather, follow_ground, follow_films, aim_mirrors)
+                    (
+                        follow_weather,
+                        follow_ground,
+                        follow_films,
+                        follow_map.run_if(resource_exists::<GroundMap>),
+                        aim_mirrors,
+                    )
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
@@ -174,10 +182,11 @@ fn both(images: Option<&[Handle<Image>; 2]>) -> [Option<Handle<Image>>; 2] {
     images.map_or([None, None], |images| images.clone().map(Some))
 }
 
-fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
+fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, map: Option<Res<GroundMap>>) {
     commands.insert_resource(WaterImages {
         levels: images.add(level_image(LEVEL_TEXELS)),
         films: images.add(film_image(LEVEL_TEXELS)),
+        map: images.add(map_image(map.map(|map| *map.map().settings()))),
         ripples: images.add(slope_image(256)),
         waves: images.add(slope_image(256)),
         // Of no size before a view asks for a mirror.
@@ -282,6 +291,7 @@ fn wet_meshes(
                     params: surface.handles.params.clone(),
                     levels: water.levels.clone(),
                     films: water.films.clone(),
+                    map: water.map.clone(),
                     ripples: water.ripples.clone(),
                     waves: water.waves.clone(),
                     reflection: water.reflection.clone(),

@@ -12,5 +12,6 @@ mod ring_layers;
 mod shader_functions;
 mod slope_mips;
 mod water;
+mod water_map;
 mod waves;
 mod wet_albedo;

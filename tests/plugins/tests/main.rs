@@ -18,3 +18,4 @@ mod scenes;
 mod skipping;
 mod two_views;
 mod views;
+mod water_map;

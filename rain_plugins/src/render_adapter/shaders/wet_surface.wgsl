@@ -12,7 +12,7 @@
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
     rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
     rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_noise_puddle, rain_normal_aslant, rain_udn,
-    rain_remembered, rain_memory_share, rain_puddle_rim,
+    rain_film_texel, rain_memory_of, rain_memory_share, rain_puddle_rim, rain_water_map,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -51,6 +51,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(109) var rain_film_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(110) var rain_near_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(114) var rain_wave_normals: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(115) var rain_more_wave_normals: texture_2d<f32>;
 
@@ -103,6 +104,16 @@ fn wave_normals(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>) -> vec2<f32> {
     let first = textureSampleGrad(rain_wave_normals, rain_sampler, p.xz * a.x + a.yz, ddx * a.x, ddy * a.x);
     let second = textureSampleGrad(rain_more_wave_normals, rain_sampler, p.xz * b.x + b.yz, ddx * b.x, ddy * b.x);
     return 0.5 * (rain_normal_aslant(first.xy) + rain_normal_aslant(second.xy));
+}
+
+// What the ground at `p` remembers; near the view the finer map knows more.
+fn remembered(p: vec3<f32>) -> vec3<f32> {
+    let levels = rain_surface.levels;
+    let far = rain_film_texel(rain_film_map, rain_sampler, levels, p);
+    if (far.w <= 0.0) {
+        return vec3<f32>(0.0);
+    }
+    return rain_memory_of(levels, p, rain_water_map(rain_near_map, rain_sampler, rain_surface.map, p.xz, far));
 }
 
 // What artists placed at a point.
@@ -215,7 +226,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 
     let normal = normalize(pbr.world_normal);
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
-    let ground = rain_remembered(rain_film_map, rain_sampler, rain_surface.levels, p);
+    let ground = remembered(p);
     let memory = rain_memory_share(ground.z, normal.y);
     // What the ground remembers, a thing's own wetness and walls in the lee need no look at what covers now; rings do.
     var exposure = wetting.take.x * placed.wettable * rain_catch(normal.y, dot(normal, to_rain));
