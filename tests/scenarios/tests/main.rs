@@ -4,6 +4,7 @@ mod bad_input;
 mod border;
 mod determinism;
 mod goldens;
+mod ground_masks;
 mod intensity;
 mod moving;
 mod real_models;

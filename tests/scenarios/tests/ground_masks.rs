@@ -1,0 +1,105 @@
+//! The masks of the ground: what it remembers of the rain, and where water stands on it.
+
+use std::path::Path;
+
+use bevy::math::DVec2;
+use rain_plugins::scenario::file::ScenePart;
+use rain_plugins::surface::WaterLevels;
+use test_support::shots::{Plan, View, mean, raining, steady};
+use test_support::{assets, gpu, world};
+
+#[test]
+fn the_wet_mask_keeps_what_the_ground_took_under_a_roof_that_has_just_come() {
+    if !gpu::available() {
+        return;
+    }
+    let shown = |memory: bool| {
+        let views = [View::new([0.0, 1.7, 4.0], [0.0, 0.0, -1.0]); 2];
+        let plan = Plan::new(steady(50.0, [0.0; 3]), 120.0, &views);
+        let mut session = plan.session(Path::new("."), |world| {
+            if !memory {
+                world::without_ground(world);
+            }
+            world::ground(world);
+        });
+        // The ground is handed over at the end of a step and built by the ticks after it.
+        session.advance(1.0).expect("the renderer goes on");
+        let under = |p: bevy::math::DVec3| p.y.abs() < 0.02 && p.x.abs().max(p.z.abs()) < 4.5;
+        let before = plan.shot(&mut session, 0).where_surface(under);
+        world::roof(session.app().world_mut());
+        let after = plan.shot(&mut session, 1).where_surface(under);
+        assert!(
+            before.len() > 3000 && after.len() > 3000,
+            "{} and {}",
+            before.len(),
+            after.len()
+        );
+        assert!(
+            raining(&before) > 0 && raining(&after) == 0,
+            "the roof keeps the rain off"
+        );
+        [&before, &after].map(|pixels| mean(pixels, |p| p.wet))
+    };
+    let [before, after] = shown(true);
+    assert!(
+        before > 0.99 && after > 0.99,
+        "{before}, then {after} under the new roof"
+    );
+    let [before, after] = shown(false);
+    assert!(
+        before > 0.99 && after == 0.0,
+        "{before}, then {after} without the ground"
+    );
+}
+
+#[test]
+fn the_water_mask_shows_a_level_pool_in_the_hollow_and_nothing_on_the_crown() {
+    if !gpu::available() {
+        return;
+    }
+    let (files, layout) = assets::street_folder();
+    // From above, between a hollow and the crown of the road.
+    let view = View::new([1.3, 4.2, -4.0], [1.3, 0.0, -4.0]);
+    let mut plan = Plan::new(steady(50.0, [0.0; 3]), 1200.0, &[view]);
+    plan.scenario.scene = vec![ScenePart::from_file(street::STREET_FILE)];
+    let mut session = plan.session(files, |_| {});
+    let shot = plan.shot(&mut session, 0);
+    let from = |p: bevy::math::DVec3, h: &street::layout::Hollow| {
+        DVec2::new(p.x, p.z).distance(DVec2::new(h.centre[0].into(), h.centre[1].into()))
+    };
+    let hollow = layout
+        .hollows
+        .iter()
+        .find(|h| h.centre == [2.3, -4.0])
+        .expect("the hollow before the camera");
+    let pool = shot.where_surface(|p| from(p, hollow) < 0.4);
+    assert!(pool.len() > 120, "{} pixels in the hollow", pool.len());
+    let depths = pool.iter().map(|p| p.water);
+    let (shallow, deep) = depths.fold((f64::MAX, 0.0_f64), |(l, h), d| (l.min(d), h.max(d)));
+    assert!(shallow > 0.005 && deep < 0.06, "{shallow} to {deep} m in the hollow");
+    // The bottom is bowl-shaped, the surface level; distances are rounded to a millimetre.
+    let surface = pool.iter().filter_map(|p| Some(p.surface?.y + p.water));
+    let (low, high) = surface.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    assert!(high - low < 0.003, "its surface lies between {low} and {high} m");
+    // Soaked under water.
+    assert!(pool.iter().all(|p| p.wet > 0.999));
+    let crown = shot.where_surface(|p| {
+        let road = (p.y - f64::from(layout.ground_height(p.x as f32, p.z as f32))).abs() < 0.02;
+        road && p.x.abs() < 0.5 && layout.hollows.iter().all(|h| from(p, h) > f64::from(h.radius))
+    });
+    assert!(crown.len() > 200, "{} pixels of the crown", crown.len());
+    assert_eq!(crown.iter().filter(|p| p.water > 0.0).count(), 0, "water on the crown");
+
+    // A hollow in a wheel rut holds a puddle that is longer along the rut than across it.
+    let levels = session.app().world().resource::<WaterLevels>().clone();
+    let extent = |along: [f64; 2]| {
+        let wet = |k: i32| {
+            let s = 0.02 * f64::from(k);
+            levels.depth_at(-1.0 + s * along[0], -8.5 + s * along[1]) > 0.002
+        };
+        let reach = |sign: i32| (0..200).take_while(|k| wet(sign * k)).count();
+        0.02 * (reach(1) + reach(-1)) as f64
+    };
+    let (length, width) = (extent([0.0, 1.0]), extent([1.0, 0.0]));
+    assert!(width > 0.5 && length > 1.2 * width, "{length} m long, {width} m wide");
+}
