@@ -93,12 +93,13 @@ pub mod prelude {
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::surface::{
-        KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, ShowPaint, SurfaceWetting,
-        WaterAppearance,
+        AutoPaint, AutoPaintDone, AutoPaintError, KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection,
+        PuddlePaint, ShowPaint, SurfaceWetting, WaterAppearance, WetLook,
     };
     pub use crate::waves::{WaterDisturber, WaveWaterSettings};
     pub use crate::{
         RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
     };
+    pub use rain_core::surface::SurfaceState;
     pub use rain_ecs::prelude::*;
 }

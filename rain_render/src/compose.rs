@@ -32,6 +32,7 @@ pub const LIBRARIES: &[Library] = library![
     "wetness",
     "standing_water",
     "placed_water",
+    "artist_look",
     "slopes",
     "waves"
 ];

@@ -31,6 +31,9 @@ pub struct WetSurface {
     /// Noise puddles: present, height map; z, w unused.
     #[uniform(100)]
     pub noise_flags: Vec4,
+    /// Look (0 physical, else a source's rules), fixed state (0 none, 1 dry … 4 puddle), ground only; w unused.
+    #[uniform(100)]
+    pub look: Vec4,
     /// The cover map.
     #[texture(101, sample_type = "depth")]
     pub cover: Handle<Image>,
@@ -85,7 +88,16 @@ impl Plugin for WetMaterialPlugin {
         source.push_str(&compose::constants());
         source.push_str(compose::TYPES);
         for library in compose::LIBRARIES {
-            if ["hash", "cover", "wetness", "standing_water", "placed_water"].contains(&library.name) {
+            if [
+                "hash",
+                "cover",
+                "wetness",
+                "standing_water",
+                "placed_water",
+                "artist_look",
+            ]
+            .contains(&library.name)
+            {
                 source.push_str(library.source);
             }
         }

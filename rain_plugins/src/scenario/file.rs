@@ -25,6 +25,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 
 use super::expectation::Expectation;
 use super::weather::Weather;
+use crate::surface::WetLook;
 
 /// A point or vector: x, y (up), z. Units: metres, or m/s for velocities.
 pub type Vector = [f64; 3];
@@ -403,6 +404,8 @@ pub struct RainSettings {
     /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0005, 0.25].
     /// Default: 1/60.
     pub exposure_s: f64,
+    /// Whose rules wet surfaces look by: `Physical`, `Lagarde`, `LagardePorous`, `Nguyenova`. Default: `Physical`.
+    pub look: WetLook,
 }
 
 impl Default for RainSettings {
@@ -412,6 +415,7 @@ impl Default for RainSettings {
             streak_budget: 30_000,
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
+            look: WetLook::Physical,
         }
     }
 }

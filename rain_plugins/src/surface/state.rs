@@ -3,7 +3,8 @@
 use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
-use super::paint::PuddlePaint;
+use super::materials::SurfaceWetting;
+use super::paint::{NoisePuddles, PuddlePaint};
 use super::water::WaterLevels;
 use crate::rainfall::RainView;
 use crate::render_adapter::WetSurfaceHandles;
@@ -31,8 +32,10 @@ pub struct SurfaceState {
     pub anchor: Vec3,
     /// Something is wet, water stands in a puddle, or rain falls.
     pub wet: bool,
-    /// Wet materials are in the scene: something is wet, or painted.
+    /// Wet materials are in the scene: something is wet, painted, or of a fixed state.
     pub shown: bool,
+    /// Artists have placed puddles: painted, of noise or of a fixed state.
+    pub placed: bool,
     /// The buffer that the shaders read.
     pub handles: WetSurfaceHandles,
 }
@@ -48,6 +51,7 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
             anchor: Vec3::ZERO,
             wet: false,
             shown: false,
+            placed: false,
             handles: handles.clone(),
         });
     }
@@ -60,9 +64,12 @@ pub(super) fn follow_weather(
     weather: Query<&WeatherState>,
     views: Query<(&GlobalTransform, &Camera), With<RainView>>,
     painted: Query<(), With<PuddlePaint>>,
+    noise: Query<(), With<NoisePuddles>>,
+    refined: Query<&SurfaceWetting>,
     levels: Res<WaterLevels>,
 ) {
-    surface.shown = !painted.is_empty();
+    surface.shown = !painted.is_empty() || refined.iter().any(|wetting| wetting.state.is_some());
+    surface.placed = surface.shown || !noise.is_empty();
     let eye = views.iter().find(|(_, c)| c.is_active).map(|(t, _)| t.translation());
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());

@@ -15,6 +15,7 @@ mod rings;
 mod tile;
 
 use bevy::prelude::*;
+use rain_ecs::splash::{FootSplash, FootSystems};
 use rain_render::waves::{RippleSettings, RippleTile, WaveFrame, WaveTile, WaveTileSettings};
 
 pub use disturb::WaterDisturber;
@@ -54,13 +55,16 @@ impl Plugin for WavesPlugin {
             return; // nobody sees them on a server
         }
         app.register_type::<WaterDisturber>()
+            .add_message::<FootSplash>()
             .init_resource::<WaveWaterSettings>()
             .add_systems(Startup, create_tiles)
             .add_systems(
                 PostUpdate,
                 (
                     rings::rain_on_water.run_if(resource_exists::<RainRings>),
-                    tile::move_water.run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
+                    tile::move_water
+                        .after(FootSystems)
+                        .run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
                 )
                     .in_set(RainViewSystems::Views),
             );

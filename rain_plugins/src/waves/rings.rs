@@ -66,11 +66,11 @@ pub(super) fn rain_on_water(
         Some(SkipReason::NoView)
     } else if appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
         Some(SkipReason::Disabled)
-    } else if !surface.is_some_and(|s| s.wet) {
+    } else if !surface.as_ref().is_some_and(|s| s.wet) {
         Some(SkipReason::Dry)
     } else if !field.is_raining() && rings.tile.is_calm() && !rings.tile.wants_pass() {
         Some(SkipReason::NoRain)
-    } else if !levels.is_some_and(|l| l.any_water()) {
+    } else if !levels.is_some_and(|l| l.any_water()) && !surface.is_some_and(|s| s.placed) {
         Some(SkipReason::NoWater)
     } else {
         None

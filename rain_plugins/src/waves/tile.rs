@@ -5,7 +5,7 @@ use rain_ecs::prelude::*;
 use rain_render::waves::{Disturbance, MAX_DISTURBANCES, WaveTile};
 
 use super::Handover;
-use super::disturb::{DisturberMotion, WaterDisturber};
+use super::disturb::{DisturberMotion, WaterDisturber, foot_fall};
 use super::rings::seen_ns;
 use crate::rainfall::RainView;
 use crate::report::{PassName, RainReport, SkipReason};
@@ -68,6 +68,7 @@ pub(super) fn move_water(
     report: Res<RainReport>,
     views: Query<(&Camera, &GlobalTransform), With<RainView>>,
     mut disturbers: Query<(&WaterDisturber, &GlobalTransform, &mut DisturberMotion)>,
+    mut splashes: MessageReader<FootSplash>,
 ) {
     let waves = &mut *waves;
     waves.handover.wanted = false;
@@ -87,6 +88,8 @@ pub(super) fn move_water(
             found.extend(disturbance);
         }
     }
+    let room = MAX_DISTURBANCES - found.len();
+    found.extend(splashes.read().map(foot_fall).take(room));
     let view = views.iter().find(|(c, _)| c.is_active).map(|(_, t)| t);
     let reason = match view {
         None => Some(SkipReason::NoView),

@@ -49,7 +49,7 @@ fn hollow_ground() -> Mesh {
 }
 
 /// The ground with a hollow under a dry sky, and its weather.
-fn hollow() -> (TestApp, Entity) {
+pub(crate) fn hollow() -> (TestApp, Entity) {
     let mut test = TestApp::new([160, 90], true);
     let mesh = test.world().resource_mut::<Assets<Mesh>>().add(hollow_ground());
     let material = test
