@@ -2,6 +2,7 @@
 
 mod common;
 mod cover;
+mod foot;
 mod history;
 mod press;
 mod queries;

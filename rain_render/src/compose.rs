@@ -35,6 +35,7 @@ pub const LIBRARIES: &[Library] = library![
     "ground_memory",
     "wind_waves",
     "placed_water",
+    "artist_look",
     "slopes",
     "waves",
     "ring_layers",

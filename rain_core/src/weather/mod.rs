@@ -15,6 +15,7 @@
 //! | `column.rs` | pores and film of one surface, the physical way |
 //! | `column_f32.rs` | the same in single precision, for grids |
 //! | `artist.rs` | wetness and water levels, the artists' way |
+//! | `rain_types.rs` | the artists' table of rain types |
 //! | `surfaces.rs` | all of these together, advanced over conditions or a timeline |
 
 mod artist;
@@ -27,6 +28,7 @@ mod film_flow;
 pub(crate) mod horton;
 mod hyetograph;
 mod preset;
+mod rain_types;
 pub(crate) mod store;
 mod surface_class;
 mod surfaces;
@@ -42,6 +44,7 @@ pub use evaporation::{
 pub use horton::Infiltration;
 pub use hyetograph::{HyetographError, HyetographProblem, MAX_HYETOGRAPH_ROWS, read_hyetograph};
 pub use preset::{IntensityClass, UnknownPreset, WeatherPreset};
+pub use rain_types::{RainType, RainTypes};
 pub use surface_class::{SurfaceClass, SurfaceProperties};
 pub use surfaces::{VARYING_STEP_S, WeatherSurfaces};
 pub use timeline::{Keyframe, Timeline, Transition};

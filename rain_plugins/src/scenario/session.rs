@@ -88,6 +88,7 @@ impl Session {
         let mut app = App::new();
         app.add_plugins((headless::plugins(), RenderDiagnosticsPlugin));
         app.insert_resource(RainSeed(scenario.seed));
+        app.insert_resource(scenario.rain.look);
         app.init_resource::<Pictured>().init_resource::<Returned>();
         if scenario.rain.enabled {
             app.add_plugins(RainPlugins).insert_resource(WaveWaterSettings {

@@ -1,5 +1,6 @@
 //! The passes against their CPU twins, on a bare device.
 
+mod artist_look;
 mod cover_parity;
 mod device;
 mod far;

@@ -43,6 +43,15 @@ pub struct WaterAt {
     pub puddle_m: f64,
 }
 
+/// The hollow that a place lies in, filled to the brim.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoolRoom {
+    /// Height of its lowest cell. Units: m.
+    pub bottom_m: f64,
+    /// Level at which it overflows, for the last time if it does so more than once. Units: m.
+    pub spill_m: f64,
+}
+
 impl Ground {
     /// Where the cells lie.
     #[must_use]
@@ -144,6 +153,22 @@ impl Ground {
         // A hole is never near.
         let near = (place.y - self.heights[cell]).abs() <= REACH_M;
         near.then(|| f32::from(self.exposure[cell]) / 255.0)
+    }
+
+    /// The hollow that would flood a place on the ground; none on slopes and roofs, beside the map, and where water
+    /// cannot leave.
+    #[must_use]
+    pub fn pool_room_at(&self, place: DVec3) -> Option<PoolRoom> {
+        let cell = self.cell_at(place.x, place.z)?;
+        let basins = self.basins.basins();
+        let basin = basins.basins()[basins.top(basins.wettable_leaf_at(cell)?) as usize];
+        let spill_m = basin.spill_m?;
+        // A hole is never near.
+        let on_ground = (place.y - self.heights[cell]).abs() <= REACH_M;
+        (on_ground && place.y < spill_m).then_some(PoolRoom {
+            bottom_m: basin.bottom_m,
+            spill_m,
+        })
     }
 
     fn saturation(&self, class: SurfaceClass, pores_mm: f64) -> f64 {
