@@ -360,7 +360,7 @@ fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughne
     let shown = share * smoothstep(0.0, 0.05, edge);
     // Still water mirrors sharply: its lobe is smaller than a texel.
     if (lobe * size.y < 0.75) {
-        return vec4<f32>(textureSampleLevel(rain_reflection_map, rain_sampler, middle, 0.0).xyz, shown);
+        return vec4<f32>(textureSampleLevel(rain_reflection_map, rain_sampler, middle, layer, 0.0).xyz, shown);
     }
     var weights = array<f32, 7>(0.07, 0.13, 0.19, 0.22, 0.19, 0.13, 0.07);
     var sum = vec3<f32>(0.0);
