@@ -1,8 +1,10 @@
 //! Rings without a grid and the roughness of far water.
 
 use proptest::prelude::*;
-use rain_core::rainfall::{Distribution, Spectrum, terminal_velocity};
-use rain_core::waves::{DropImpact, Ring, RingTable, WaveField, WaveSettings, impact_slope_variance, slope_variance};
+use rain_core::rainfall::{Distribution, DropSizes, Spectrum, terminal_velocity};
+use rain_core::waves::{
+    DropImpact, Ring, RingTable, WaveField, WaveSettings, impact_slope_variance, rain_slope_variance, slope_variance,
+};
 use rain_reference::waves as truth;
 
 use super::super::check::Worst;
@@ -261,6 +263,11 @@ fn roughness_of_a_rain_is_the_sum_over_its_drops() {
         assert!(
             (value / sum - 1.0).abs() < 5e-4,
             "{rate} mm/h, cell {cell}: {value} is not {sum}"
+        );
+        let by_sizes = rain_slope_variance(&DropSizes::from(rain), 0.005, 0.6, cell);
+        assert!(
+            (by_sizes / value - 1.0).abs() < 2e-3,
+            "{rate} mm/h, cell {cell}: {by_sizes} is not {value}"
         );
     }
     let dry = Spectrum::new(Distribution::MarshallPalmer, 0.0).expect("dry");
