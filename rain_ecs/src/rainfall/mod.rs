@@ -107,8 +107,11 @@ impl RainfallField {
             }
         }
         self.wind_m_s = conditions.wind_m_s;
-        // Dry: vapour thins the air by at most 1 % and speeds drops by at most 0.5 %.
-        let density = air_density_kg_m3(conditions.pressure_pa, conditions.air_temperature_c, 0.0);
+        let density = air_density_kg_m3(
+            conditions.pressure_pa,
+            conditions.air_temperature_c,
+            conditions.relative_humidity,
+        );
         self.motion.set_velocity(self.wind_m_s, density);
         self.motion.advance(seconds);
     }
