@@ -182,6 +182,7 @@ const PUBLISHED: [(bool, f64, f64, [[f64; 2]; 3]); 16] = [
 
 #[test]
 fn misclassified_shares_are_those_published() {
+    let mut off = Vec::new();
     for (mixed, cell, wind, published) in PUBLISHED {
         let m = measure(wind, mixed, cell);
         let case = format!("mixed {mixed}, cell {cell} m, wind {wind} m/s");
@@ -191,10 +192,9 @@ fn misclassified_shares_are_those_published() {
             ("mean direction", m.mean_direction, published[2]),
         ] {
             // Everything is seeded: only the rounding of the published figure is left.
-            assert!(
-                (got.dry - dry).abs() < 0.006 && (got.wet - wet).abs() < 0.006,
-                "{case}, {name}: {got:?}"
-            );
+            if !((got.dry - dry).abs() < 0.006 && (got.wet - wet).abs() < 0.006) {
+                off.push(format!("{case}, {name}: {got:.3?}"));
+            }
         }
         let all = |w: Wrong| w.dry + w.wet;
         if wind > 0.0 {
@@ -210,6 +210,7 @@ fn misclassified_shares_are_those_published() {
             m.three_starts
         );
     }
+    assert!(off.is_empty(), "{}", off.join("\n"));
 }
 
 #[test]

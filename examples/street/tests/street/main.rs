@@ -4,4 +4,5 @@ mod car;
 mod files;
 mod geometry;
 mod places;
+mod rain;
 mod scene;
