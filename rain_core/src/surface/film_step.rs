@@ -11,7 +11,7 @@
 //! is `depth + P dt − result` where the result is above 0.
 //!
 //! # Accuracy
-//! In single precision the roundings of many short steps add up: in a minute to 1e-3 of a film of 1 mm at 60 steps a
+//! In single precision the roundings of many short steps add up: in a minute to 1e-3 of the film at 60 steps a
 //! second, where the splitting errs by 1e-7; to 4e-5 in steps of 0.25 s, 1e-5 in steps of 1 s. Step grids by 0.25 to 1 s,
 //! or keep the film in f64.
 //!

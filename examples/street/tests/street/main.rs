@@ -6,3 +6,4 @@ mod geometry;
 mod places;
 mod rain;
 mod scene;
+mod walls;

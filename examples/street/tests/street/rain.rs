@@ -15,13 +15,13 @@ const MEAN: f64 = 0.1602;
 /// The breeze in the storm's scenario while the camera stands in the arcade. Units: m/s, x and z.
 const BREEZE: [f64; 2] = [0.8, 1.6];
 
-fn triangles() -> Vec<Triangle> {
+pub fn triangles() -> Vec<Triangle> {
     let corners = |t: &crate::scene::Triangle| t.corners.map(|c| c.as_dvec3().to_array());
     street_scene().triangles.iter().map(corners).collect()
 }
 
 /// Of `triangles` those that the ways of all drops through `p` can meet: all of them run in one upright plane.
-fn in_the_winds_plane(triangles: &[Triangle], p: [f64; 3], wind: [f64; 2]) -> Vec<Triangle> {
+pub fn in_the_winds_plane(triangles: &[Triangle], p: [f64; 3], wind: [f64; 2]) -> Vec<Triangle> {
     let across = DVec2::from(wind).normalize().perp();
     let aside = |c: [f64; 3]| across.dot(DVec2::new(c[0] - p[0], c[2] - p[2]));
     triangles
@@ -31,7 +31,7 @@ fn in_the_winds_plane(triangles: &[Triangle], p: [f64; 3], wind: [f64; 2]) -> Ve
         .collect()
 }
 
-fn map(triangles: &[Triangle], cell_m: f64, wind: [f64; 2]) -> CoverScene {
+pub fn map(triangles: &[Triangle], cell_m: f64, wind: [f64; 2]) -> CoverScene {
     let slope = FallSlope::new(DVec2::from(wind), MEAN).expect("inside the domain");
     let settings = CoverSettings {
         cell_m,
@@ -45,7 +45,7 @@ fn map(triangles: &[Triangle], cell_m: f64, wind: [f64; 2]) -> CoverScene {
 }
 
 /// Even points of a block.
-fn points(low: [f64; 3], high: [f64; 3], count: u32) -> impl Iterator<Item = [f64; 3]> {
+pub fn points(low: [f64; 3], high: [f64; 3], count: u32) -> impl Iterator<Item = [f64; 3]> {
     (0..count).map(move |i| {
         let share = pcg3d([i, 40, 2]).map(|h| f64::from(unit_f32(h)));
         [0, 1, 2].map(|k| low[k] + share[k] * (high[k] - low[k]))

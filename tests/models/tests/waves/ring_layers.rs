@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use rain_core::rainfall::{Distribution, DropSizes, Spectrum, terminal_velocity};
 use rain_core::waves::{
-    CircleSettings, RING_CYCLES, RingForcing, RingGrowth, RingIntensity, RingLayerSettings, RingLayers,
+    CircleSettings, RING_CYCLES, RING_FADE, RingForcing, RingGrowth, RingIntensity, RingLayerSettings, RingLayers,
     rain_slope_variance, ring_clocks, ring_layer_weights, ring_presence_f32, ring_profile_f32, slope_variance,
 };
 use rain_reference::waves as truth;
@@ -114,6 +114,18 @@ fn intensity_brings_layers_in_by_quarters() {
     assert_eq!((ring_presence_f32(0.999, 1.0), ring_presence_f32(0.0, 0.0)), (1.0, 0.0));
     let edge = ring_presence_f32(0.5, 0.5);
     assert!((edge - 0.5).abs() < 1e-5, "{edge}");
+    let mut worst = Worst::default();
+    for i in 0..=1000_u16 {
+        for j in 0..=100_u16 {
+            let (chance, weight) = (f32::from(i) / 1000.0, f32::from(j) / 100.0);
+            let fade = f64::from(RING_FADE);
+            let exact = ((f64::from(weight) * (1.0 + fade) - f64::from(chance)) / fade).clamp(0.0, 1.0);
+            worst.absolute(f64::from(ring_presence_f32(chance, weight)), exact, || {
+                format!("{chance} {weight}")
+            });
+        }
+    }
+    worst.assert_below(3e-6, 101_101);
     for weight in [0.0_f32, 0.02, 0.1, 0.5, 0.93, 1.0] {
         let count = 20_000_u16;
         let present = |i: u16| f64::from(ring_presence_f32((f32::from(i) + 0.5) / f32::from(count), weight));
