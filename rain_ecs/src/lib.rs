@@ -24,6 +24,7 @@ pub mod rainfall;
 pub mod schedule;
 pub mod seed;
 pub mod snapshot;
+pub mod splash;
 pub mod state_hash;
 pub mod surface;
 pub mod weather;
@@ -39,6 +40,7 @@ pub use rainfall::{RainfallField, RainfallFieldPlugin};
 pub use schedule::{RainSystems, RainTick};
 pub use seed::RainSeed;
 pub use snapshot::RainSnapshot;
+pub use splash::FootSplashPlugin;
 pub use state_hash::state_hash;
 pub use surface::SurfaceGroundPlugin;
 pub use weather::WeatherPlugin;
@@ -55,17 +57,20 @@ pub mod prelude {
     pub use crate::schedule::{RainSystems, RainTick};
     pub use crate::seed::RainSeed;
     pub use crate::snapshot::{RainSnapshot, SnapshotAppExt, SnapshotError};
+    pub use crate::splash::{Foot, FootSplash, FootSplashPlugin, FootSplashSettings, FootStep, PaintedStep};
     pub use crate::state_hash::{HashState, StateHashAppExt, StateHasher, state_hash};
     pub use crate::surface::{
-        DynamicWetness, SurfaceGround, SurfaceGroundPlugin, SurfaceMaterial, SurfaceScene, SurfaceSettings,
-        surface_class_of_name,
+        DynamicWetness, FilmPress, FilmPresses, SurfaceGround, SurfaceGroundPlugin, SurfaceMaterial, SurfaceScene,
+        SurfaceSettings, surface_class_of_name,
     };
     pub use crate::weather::{
-        ActiveWeather, ArtistControls, WaterByHand, Weather, WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState,
-        WeatherTimeline,
+        ActiveWeather, ArtistControls, RainTypeTable, WaterByHand, Weather, WeatherIgnored, WeatherMode, WeatherPlugin,
+        WeatherState, WeatherTimeline,
     };
     pub use rain_core::rainfall::Distribution;
-    pub use rain_core::weather::{ArtistSettings, SurfaceClass, Timeline, WeatherConditions, WeatherPreset};
+    pub use rain_core::weather::{
+        ArtistSettings, RainType, RainTypes, SurfaceClass, Timeline, WeatherConditions, WeatherPreset,
+    };
 }
 
 /// Every plugin of this crate: the clock and all phenomena.
@@ -88,6 +93,7 @@ impl Plugin for RainEcsPlugin {
             RainfallFieldPlugin,
             CoverFieldPlugin,
             SurfaceGroundPlugin,
+            FootSplashPlugin,
         ));
     }
 }

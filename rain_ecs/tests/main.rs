@@ -2,7 +2,9 @@
 
 mod common;
 mod cover;
+mod foot;
 mod history;
+mod press;
 mod queries;
 mod snapshot;
 mod street;

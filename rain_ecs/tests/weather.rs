@@ -468,3 +468,56 @@ fn without_a_time_plugin_nothing_happens() {
         (0.0, 0)
     );
 }
+
+#[test]
+fn a_table_of_rain_types_sets_the_speeds_and_a_blend_passes_through_its_rows() {
+    let mut app = app(RainClock::default());
+    let mut table = RainTypes::default();
+    table
+        .put(RainType {
+            name: "cloudburst".into(),
+            intensity_mm_h: 50.0,
+            wetness_rise_per_s: 4.0,
+            holes_rise_per_s: 0.25,
+            puddles_rise_per_s: 0.125,
+            splashes_per_m2_s: 100.0,
+            fog_amount: 1.0,
+        })
+        .expect("valid");
+    let entity = app
+        .world_mut()
+        .spawn((Weather::rain(50.0), WeatherMode::Artist, RainTypeTable(table.clone())))
+        .id();
+    for _ in 0..4 {
+        frame(&mut app, SECOND / 2);
+    }
+    let levels = *app.world().get::<WeatherState>(entity).expect("state").artist();
+    assert_eq!(levels.wetness, 1.0);
+    assert!(
+        (levels.holes - 0.5).abs() < 1e-9 && (levels.puddles - 0.25).abs() < 1e-9,
+        "{levels:?}"
+    );
+
+    // From light to heavy over eight seconds: the speeds rise without a step, those of the row between on the way.
+    let [light, heavy] = [2.0, 10.0].map(Weather::rain);
+    let way = WeatherTimeline::blend(&light, &heavy, 2.0, 8.0).expect("valid");
+    app.world_mut().entity_mut(entity).insert(way);
+    let mut speeds = Vec::new();
+    for _ in 0..340 {
+        frame(&mut app, SECOND / 32);
+        let controls = app.world().get::<ArtistControls>(entity).expect("written by the table");
+        speeds.push(controls.0.puddles.rise_per_s[1]);
+    }
+    let speeds = &speeds[2..];
+    assert!(speeds[0] < 0.12 && (speeds[337] - 0.7).abs() < 1e-9, "{speeds:?}");
+    assert!(
+        speeds.windows(2).all(|w| w[1] >= w[0] && w[1] - w[0] < 0.02),
+        "{speeds:?}"
+    );
+    assert!(speeds.iter().any(|s| (s - 0.3).abs() < 0.01), "through moderate rain");
+    for (start, over) in [(0.0, 0.0), (0.0, -1.0), (0.0, f64::NAN)] {
+        assert!(WeatherTimeline::blend(&light, &heavy, start, over).is_err());
+    }
+    let bad = Weather::rain(f64::NAN);
+    assert!(WeatherTimeline::blend(&light, &bad, 0.0, 1.0).is_err());
+}

@@ -93,12 +93,14 @@ pub mod prelude {
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::surface::{
-        Gap, KeepDry, MovesInRain, NoisePuddles, PaintSource, PlanarReflection, PuddlePaint, SceneGap, ShowPaint,
-        SurfaceWetting, WaterAppearance, WaveNormalMaps,
+        AutoPaint, AutoPaintDone, AutoPaintError, Gap, GroundMapSettings, KeepDry, MovesInRain, NoisePuddles,
+        PaintSource, PlanarReflection, PuddlePaint, SceneGap, ShowPaint, SurfaceWetting, WaterAppearance,
+        WaveNormalMaps, WetLook,
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
         RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
     };
+    pub use rain_core::surface::SurfaceState;
     pub use rain_ecs::prelude::*;
 }

@@ -10,6 +10,8 @@ use bevy::prelude::*;
 pub enum PassName {
     /// Depth along the rain.
     Cover,
+    /// Films and pores of the ground around the view.
+    WaterMap,
     /// Rings of rain on water.
     Ripples,
     /// Interactive water in puddles.
@@ -28,6 +30,7 @@ impl PassName {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Cover => "cover",
+            Self::WaterMap => "water_map",
             Self::Ripples => "ripples",
             Self::Waves => "waves",
             Self::Reflection => "reflection",
@@ -46,6 +49,10 @@ pub enum SkipReason {
     NoRain,
     /// No standing water; for a mirror, none ahead, or the eye is under it.
     NoWater,
+    /// There is no ground of the simulation.
+    NoGround,
+    /// Nothing has changed that could be seen.
+    Settled,
     /// Nothing moves the water, and what did has died out.
     Calm,
     /// The view's air is closed in: no rain can be in sight.
@@ -68,6 +75,8 @@ impl SkipReason {
             Self::Dry => "dry",
             Self::NoRain => "no rain",
             Self::NoWater => "no water",
+            Self::NoGround => "no ground",
+            Self::Settled => "settled",
             Self::Calm => "calm",
             Self::Indoors => "indoors",
             Self::NothingMoved => "nothing moved",

@@ -137,6 +137,14 @@ struct ReflectionParams {
     plane: vec4<f32>,
 }
 
+// Where the levels of the water map lie. Of each: x, y: the eye's place in the map in sides, z: 1 / side, 1/m, w: how far
+// from the eye it holds, m; 0: not at all.
+struct WaterMapPlaces {
+    fine: vec4<f32>,
+    middle: vec4<f32>,
+    coarse: vec4<f32>,
+}
+
 // What the wet look and the wet mask read.
 struct SurfaceParams {
     // World position of the eye, m; w: time in s, from 0 to 4096.
@@ -149,6 +157,7 @@ struct SurfaceParams {
     levels: LevelMapParams,
     water: WaterLook,
     mirrors: array<ReflectionParams, 4>,
+    map: WaterMapPlaces,
 }
 
 struct MaskView {
@@ -246,6 +255,81 @@ struct RingLayerParams {
     steepness: f32,
     // Variance of the slopes of rings that are not drawn.
     hidden_variance: f32,
+    pad_a: u32,
+    pad_b: u32,
+}
+
+// What a surface does with water, in mm and s; see ColumnRules in rain_core.
+struct ColumnRules {
+    // What the pores hold, mm.
+    capacity: f32,
+    // What the texture holds, mm.
+    texture: f32,
+    // Drain, mm^(-2/3)/s.
+    drain: f32,
+    // Infiltration in the long run, mm/s, and what dry soil takes beyond that.
+    soil: f32,
+    dry_soil: f32,
+    // Its decay, 1/s.
+    soil_decay: f32,
+    // Recovery in dry spells, 1/s.
+    recovery: f32,
+    pad: f32,
+}
+
+// One level of the water map over an interval. Texels count from the lowest corner of the level.
+struct WaterMapParams {
+    rules: array<ColumnRules, 7>,
+    cover: CoverParams,
+    // Where texel (0, 0) is stored; what passes the end goes on at the start.
+    offset: vec2<u32>,
+    // Texel (0, 0) of the level as it was: what lies outside it is new.
+    kept: vec2<i32>,
+    // First ground cell that seeds are given for, and how many.
+    seed_low: vec2<i32>,
+    seed_cells: vec2<i32>,
+    // Cells of the ground, and the level's corner among them, in cells.
+    ground_cells: vec2<i32>,
+    ground_corner: vec2<f32>,
+    // The level's corner (x, z) from the origin of the cover map's positions, m.
+    corner: vec2<f32>,
+    // Texels on a side, a power of two.
+    texels: u32,
+    level: u32,
+    // Edge of a texel, m, and in ground cells.
+    cell: f32,
+    ground_step: f32,
+    // 1 / edge of a ground cell, 1/m.
+    per_ground_cell: f32,
+    // Height of the ground's base over the origin, m.
+    base: f32,
+    // Over open ground, mm/s.
+    rain: f32,
+    evaporation: f32,
+    // Length of the interval, s; 0: only new texels are filled.
+    time: f32,
+    // 1 when the map of levels of standing water holds the same cells.
+    pools: f32,
+}
+
+// A wheel or a foot on its straight way; see Ground::press in rain_core.
+struct WaterStamp {
+    // Lowest texel of its box, and number of texels.
+    low: vec2<i32>,
+    count: vec2<i32>,
+    // Start of the way from the corner of the level, m, and unit vector along it.
+    start: vec2<f32>,
+    along: vec2<f32>,
+    // Length and half width, m.
+    length: f32,
+    half: f32,
+    // Share of the film that goes, and share of this that is laid beside.
+    share: f32,
+    aside: f32,
+    // Width of the bands beside, m.
+    band: f32,
+    // Where its sums are.
+    slot: u32,
     pad_a: u32,
     pad_b: u32,
 }

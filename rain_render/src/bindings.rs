@@ -68,3 +68,34 @@ pub(crate) fn storage_texture_entry(
         count: None,
     }
 }
+
+/// A texture of one texel, for a binding that has nothing to show; six layers are a cube.
+pub(crate) fn one_texel(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    layers: u32,
+) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: 1,
+            height: 1,
+            depth_or_array_layers: layers,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(if layers == 6 {
+            wgpu::TextureViewDimension::Cube
+        } else {
+            wgpu::TextureViewDimension::D2
+        }),
+        ..Default::default()
+    })
+}

@@ -35,9 +35,12 @@ pub const LIBRARIES: &[Library] = library![
     "ground_memory",
     "wind_waves",
     "placed_water",
+    "artist_look",
     "slopes",
     "waves",
-    "ring_layers"
+    "ring_layers",
+    "water_column",
+    "water_map"
 ];
 
 /// A pass's own source.
@@ -63,7 +66,8 @@ pub const PASSES: &[Pass] = passes![
     "slope_mips",
     "reflection_mips",
     "waves",
-    "ring_layers"
+    "ring_layers",
+    "water_map"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:

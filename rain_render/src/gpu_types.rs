@@ -6,6 +6,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use rain_core::rainfall::CLASS_COUNT;
+use rain_core::weather::SurfaceClass;
 
 use crate::reflection::MAX_MIRRORS;
 
@@ -106,6 +107,15 @@ pub struct ReflectionParams {
     pub plane: [f32; 4],
 }
 
+/// Where the levels of the water map lie.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct WaterMapPlaces {
+    pub fine: [f32; 4],
+    pub middle: [f32; 4],
+    pub coarse: [f32; 4],
+}
+
 /// What the wet look and the wet mask read.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -117,6 +127,7 @@ pub struct SurfaceParams {
     pub levels: LevelMapParams,
     pub water: WaterLook,
     pub mirrors: [ReflectionParams; MAX_MIRRORS],
+    pub map: WaterMapPlaces,
 }
 
 /// The mask pass's view.
@@ -196,6 +207,78 @@ pub struct RingLayerParams {
     pub pad_b: u32,
 }
 
+/// What a surface does with water.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct ColumnRules {
+    pub capacity: f32,
+    pub texture: f32,
+    pub drain: f32,
+    pub soil: f32,
+    pub dry_soil: f32,
+    pub soil_decay: f32,
+    pub recovery: f32,
+    pub pad: f32,
+}
+
+impl From<&rain_core::weather::ColumnRules> for ColumnRules {
+    fn from(rules: &rain_core::weather::ColumnRules) -> Self {
+        Self {
+            capacity: rules.capacity_mm,
+            texture: rules.texture_mm,
+            drain: rules.drain,
+            soil: rules.soil_mm_s,
+            dry_soil: rules.dry_soil_mm_s,
+            soil_decay: rules.soil_decay_per_s,
+            recovery: rules.recovery_per_s,
+            pad: 0.0,
+        }
+    }
+}
+
+/// One level of the water map over an interval.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct WaterMapParams {
+    pub rules: [ColumnRules; SurfaceClass::COUNT],
+    pub cover: CoverParams,
+    pub offset: [u32; 2],
+    pub kept: [i32; 2],
+    pub seed_low: [i32; 2],
+    pub seed_cells: [i32; 2],
+    pub ground_cells: [i32; 2],
+    pub ground_corner: [f32; 2],
+    pub corner: [f32; 2],
+    pub texels: u32,
+    pub level: u32,
+    pub cell: f32,
+    pub ground_step: f32,
+    pub per_ground_cell: f32,
+    pub base: f32,
+    pub rain: f32,
+    pub evaporation: f32,
+    pub time: f32,
+    pub pools: f32,
+}
+
+/// A wheel or a foot on its straight way.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct WaterStamp {
+    pub low: [i32; 2],
+    pub count: [i32; 2],
+    pub start: [f32; 2],
+    pub along: [f32; 2],
+    pub length: f32,
+    pub half: f32,
+    pub share: f32,
+    pub aside: f32,
+    pub band: f32,
+    pub slot: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+}
+
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
 pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
 
@@ -219,7 +302,8 @@ pub fn layouts() -> Vec<Layout> {
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
         layout!(WaterLook: absorption, mud, ambient, ripples, waves, place, map, more_map),
         layout!(ReflectionParams: clip_from_eye, eye, plane),
-        layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors),
+        layout!(WaterMapPlaces: fine, middle, coarse),
+        layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors, map),
         layout!(MaskView: eye_from_clip, screen, surface),
         layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant_squared, g, keep, inverse_keep,
             blend, per_cell, rim, rim_damping, hidden_variance, pad_a, pad_b, pad_c),
@@ -227,5 +311,9 @@ pub fn layouts() -> Vec<Layout> {
         layout!(WaveBin: place, first, count, pad),
         layout!(RingLayerParams: parts, weights, wholes, cycles, offset_x, offset_z, cells, texels, repeats, by_number,
             steepness, hidden_variance, pad_a, pad_b),
+        layout!(ColumnRules: capacity, texture, drain, soil, dry_soil, soil_decay, recovery, pad),
+        layout!(WaterMapParams: rules, cover, offset, kept, seed_low, seed_cells, ground_cells, ground_corner, corner,
+            texels, level, cell, ground_step, per_ground_cell, base, rain, evaporation, time, pools),
+        layout!(WaterStamp: low, count, start, along, length, half, share, aside, band, slot, pad_a, pad_b),
     ]
 }

@@ -13,4 +13,5 @@ pub mod rainfall;
 pub mod reflection;
 pub mod ring_layers;
 pub mod slope_mips;
+pub mod water_map;
 pub mod waves;

@@ -28,6 +28,7 @@
 //! projected plane may be missed.
 
 pub mod air;
+mod directions;
 mod error;
 pub mod height_tiles;
 pub mod lookup;
@@ -40,6 +41,7 @@ mod scene_test;
 #[cfg(test)]
 mod street_test;
 
+pub use directions::RainDirections;
 pub use error::CoverError;
 pub use projection::{FallSlope, ShearedOrthographic, ShearedOrthographicSettings, project};
 pub use query::ClassShare;

@@ -13,6 +13,7 @@
 //! | `impacts.rs` | impacts per area and time |
 //! | `events.rs` | single impacts from hashes |
 //! | `artist.rs` | the sources' own tables of splash rates |
+//! | `foot.rs` | splashes of feet |
 //!
 //! # Accuracy
 //! Thresholds are measured on smooth walls and thin films of water; rough ground splashes earlier. Crown height and
@@ -22,6 +23,7 @@
 mod artist;
 mod crown;
 mod events;
+mod foot;
 mod impacts;
 mod numbers;
 mod secondary;
@@ -30,6 +32,7 @@ mod threshold;
 pub use artist::{TrafficSplashes, artist_splashes_per_m2_s, splash_image_life_s};
 pub use crown::{crater_radius_m, crown_height_m, crown_life_s, crown_opacity, crown_radius_m, crown_radius_m_f32};
 pub use events::{ImpactEvent, for_each_impact, hashed_poisson};
+pub use foot::foot_splash_strength;
 pub use impacts::{ImpactFlux, splashes_per_m2_s};
 pub use numbers::{ImpactNumbers, impact_energy_j, impact_momentum_kg_m_s, splash_k, splash_k_f32, water_drop_kg};
 pub use secondary::{Impact, SecondaryDrop, Splash, SplashKind, secondary_drop};

@@ -8,6 +8,8 @@
 //! on gloss makes every gloss of 0.4 and more a perfect mirror (both sources' errata). The bounds below are those of the
 //! arithmetic against the listings; nothing of nature is claimed.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::clamped;
 
 /// Darkest factor on the albedo of a wet surface (both sources).
@@ -174,5 +176,46 @@ pub fn nguyenova_puddle(look: ArtistLook, amount: f64) -> ArtistLook {
         albedo: look.albedo * lerp(1.0, PUDDLE_ALBEDO, p),
         gloss: lerp(look.gloss, 1.0, p),
         ..look
+    }
+}
+
+/// Whose rules a wet surface follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArtistRules {
+    /// [`lagarde_wet`], water on top by [`ArtistLook::flooded`] (E3, E6, E7).
+    #[default]
+    Lagarde,
+    /// [`lagarde_porous_wet`], water on top by [`ArtistLook::flooded`].
+    LagardePorous,
+    /// [`lagarde_wet`], water on top by [`nguyenova_puddle`] (C24, C25, C43).
+    Nguyenova,
+}
+
+/// A surface of a wet level under accumulated water, by one source's rules: the four types dry, wet, drenched and
+/// puddle are (0, 0), (w, 0), (w, 0 < A < 1) and (any, 1) (E1, E8; Nakamae et al. 1990).
+///
+/// Wetness is the wet level and the water (E9; with Nguyenova the wet level alone). Albedo is that of the dielectric
+/// part: metals keep theirs. `porosity` counts with [`ArtistRules::LagardePorous`] alone ([`lagarde_porosity`] guesses
+/// it). Error: 9e-16 against the listings one after the other; a look.
+#[must_use]
+pub fn artist_surface(
+    rules: ArtistRules,
+    look: ArtistLook,
+    porosity: f64,
+    metalness: f64,
+    wet_level: f64,
+    water: f64,
+) -> ArtistLook {
+    let (look, metal, a) = (look.clamped(), unit(metalness), unit(water));
+    let wetness = effective_wetness(wet_level, 1.0, a);
+    let wet = match rules {
+        ArtistRules::Lagarde => lagarde_wet(look, wetness).flooded(a),
+        ArtistRules::LagardePorous => lagarde_porous_wet(look, porosity, wetness).flooded(a),
+        ArtistRules::Nguyenova => nguyenova_puddle(lagarde_wet(look, wet_level), a),
+    };
+    ArtistLook {
+        albedo: lerp(wet.albedo, look.albedo, metal),
+        ..wet
     }
 }

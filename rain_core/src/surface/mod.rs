@@ -16,12 +16,14 @@
 //! | `basins/` | hollows that fill, spill and merge |
 //! | `ground/` | all of it on a grid over a scene |
 //! | `artist_look.rs` | the source systems' own rules for wet looks |
+//! | `auto_paint.rs` | the masks that artists paint, worked out from geometry |
 
 pub mod artist_look;
 pub mod basins;
 pub mod ground;
 pub mod height_field;
 
+mod auto_paint;
 mod film_step;
 mod grate;
 mod green_ampt;
@@ -34,6 +36,7 @@ mod water_colour;
 mod wet_albedo;
 mod wet_roughness;
 
+pub use auto_paint::{PaintPlace, normalised_painted_depth, painted_channels, painted_depth};
 pub use film_step::{drained_film, drained_film_f32, fast_film_step_f32, film_step, film_step_f32};
 pub use grate::Grate;
 pub use green_ampt::{GreenAmpt, SoilTexture};
@@ -42,6 +45,6 @@ pub use puddle_map::puddle_map;
 pub use road_film::{RoadFilmFit, RoadSurface};
 pub use sheet_flow::{FlowLaw, SheetFlow, recession_share};
 pub use surface_state::{SurfaceState, SurfaceWeights};
-pub use water_colour::{Water, under_water};
+pub use water_colour::{Water, mud_phase, under_water};
 pub use wet_albedo::{WetBody, saturated_albedo, saturated_albedo_f32, wet_albedo, wet_albedo_f32, wet_albedo_rgb};
 pub use wet_roughness::{WATER_F0, film_roughness, film_roughness_f32, widened_roughness};

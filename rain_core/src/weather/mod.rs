@@ -13,11 +13,14 @@
 //! | `film_course.rs` | the film under constant supply and drain in closed form |
 //! | `film_flow.rs` | the film above the texture: supply against drain |
 //! | `column.rs` | pores and film of one surface, the physical way |
+//! | `column_f32.rs` | the same in single precision, for grids |
 //! | `artist.rs` | wetness and water levels, the artists' way |
+//! | `rain_types.rs` | the artists' table of rain types |
 //! | `surfaces.rs` | all of these together, advanced over conditions or a timeline |
 
 mod artist;
 mod column;
+mod column_f32;
 mod conditions;
 mod evaporation;
 mod film_course;
@@ -25,6 +28,7 @@ mod film_flow;
 pub(crate) mod horton;
 mod hyetograph;
 mod preset;
+mod rain_types;
 pub(crate) mod store;
 mod surface_class;
 mod surfaces;
@@ -32,6 +36,7 @@ mod timeline;
 
 pub use artist::{ArtistLaw, ArtistLevel, ArtistSettings, ArtistState, relative_intensity};
 pub use column::{ColumnForcing, ColumnLedger, MAX_INTERVAL_S, MAX_SURFACE_RATE_MM_H, SurfaceColumn};
+pub use column_f32::{ColumnF32, ColumnRules};
 pub use conditions::WeatherConditions;
 pub use evaporation::{
     dalton_evaporation_mm_h, dew_point_c, drying_time_s, penman_evaporation_mm_h, saturation_vapour_pressure_pa,
@@ -39,6 +44,7 @@ pub use evaporation::{
 pub use horton::Infiltration;
 pub use hyetograph::{HyetographError, HyetographProblem, MAX_HYETOGRAPH_ROWS, read_hyetograph};
 pub use preset::{IntensityClass, UnknownPreset, WeatherPreset};
+pub use rain_types::{RainType, RainTypes};
 pub use surface_class::{SurfaceClass, SurfaceProperties};
 pub use surfaces::{VARYING_STEP_S, WeatherSurfaces};
 pub use timeline::{Keyframe, Timeline, Transition};

@@ -6,11 +6,13 @@
 //! | `ground.rs` | [`SurfaceGround`], built from it, with its water |
 //! | `material.rs` | [`SurfaceMaterial`], and classes guessed from names |
 //! | `dynamic.rs` | [`DynamicWetness`] of objects that move |
+//! | `press.rs` | [`FilmPress`]: wheels and feet that leave tracks |
 //! | `snapshot.rs` | their parts of a snapshot |
 
 mod dynamic;
 mod ground;
 mod material;
+mod press;
 mod scene;
 mod snapshot;
 
@@ -20,6 +22,7 @@ use bevy_ecs::prelude::*;
 pub use dynamic::DynamicWetness;
 pub use ground::SurfaceGround;
 pub use material::{SurfaceMaterial, surface_class_of_name};
+pub use press::{FilmPress, FilmPressed, FilmPresses};
 pub use scene::{SurfaceScene, SurfaceSettings};
 
 use crate::schedule::{RainSystems, RainTick};
@@ -36,8 +39,12 @@ impl Plugin for SurfaceGroundPlugin {
             .init_resource::<SurfaceGround>()
             .register_type::<SurfaceMaterial>()
             .register_type::<DynamicWetness>()
+            .register_type::<FilmPress>()
+            .init_resource::<FilmPresses>()
             .hash_resource::<SurfaceGround>("surface")
             .hash_with("dynamic_wetness", dynamic::hash_objects)
+            .hash_with("film_press", press::hash_presses)
+            .snapshot_part::<press::PressPart>("film_press")
             .snapshot_part::<snapshot::SurfacePart>("surface")
             .snapshot_part::<snapshot::ObjectsPart>("dynamic_wetness")
             .add_systems(
@@ -45,6 +52,7 @@ impl Plugin for SurfaceGroundPlugin {
                 (
                     ground::rebuild,
                     ground::refresh_exposure,
+                    press::press_films,
                     ground::advance,
                     dynamic::wet_objects,
                 )

@@ -6,7 +6,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::Distribution;
-use rain_core::weather::{ArtistSettings, Timeline, WeatherConditions, WeatherPreset};
+use rain_core::weather::{ArtistSettings, Keyframe, RainTypes, Timeline, Transition, WeatherConditions, WeatherPreset};
 use serde::{Deserialize, Serialize};
 
 use super::state::WeatherState;
@@ -105,6 +105,20 @@ impl WeatherTimeline {
     pub fn new(timeline: Timeline) -> Self {
         Self { timeline, start_s: 0.0 }
     }
+
+    /// From one weather to another, evenly over `over_s` from `start_s` on the rain clock on. Units: s.
+    ///
+    /// # Errors
+    /// When a weather or a time is outside its domain, or `over_s` is not above 0.
+    pub fn blend(from: &Weather, to: &Weather, start_s: f64, over_s: f64) -> Result<Self, ConfigError> {
+        let key = |time_s: f64, weather: &Weather| Keyframe {
+            time_s,
+            conditions: weather.conditions(),
+            transition: Transition::Linear,
+        };
+        let timeline = Timeline::new(vec![key(0.0, from), key(over_s, to)])?;
+        Ok(Self { timeline, start_s })
+    }
 }
 
 /// Which of the two ways gives [`WeatherState::wetness`] and [`WeatherState::water_level_mm`]. Both are always
@@ -126,6 +140,14 @@ pub enum WeatherMode {
 #[reflect(Component, Debug, Clone, PartialEq, Default)]
 #[require(Weather)]
 pub struct ArtistControls(pub ArtistSettings);
+
+/// The artists' speeds come from a table of rain types by the rain's intensity: rows may be changed and added. It writes
+/// the rising speeds of [`ArtistControls`]; the rest of them stays.
+#[derive(Component, Reflect, Debug, Clone, PartialEq, Default)]
+#[reflect(opaque)]
+#[reflect(Component, Debug, Clone, PartialEq, Default)]
+#[require(ArtistControls)]
+pub struct RainTypeTable(pub RainTypes);
 
 /// Wetness and water level set by hand, in place of what the weather has made of them: what surfaces show and what
 /// [`crate::RainQueries`] answers. The water itself goes on underneath and is there again when this is taken away.

@@ -16,7 +16,7 @@ mod systems;
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
-pub use components::{ArtistControls, WaterByHand, Weather, WeatherMode, WeatherTimeline};
+pub use components::{ArtistControls, RainTypeTable, WaterByHand, Weather, WeatherMode, WeatherTimeline};
 pub use state::WeatherState;
 pub use systems::{ActiveWeather, WeatherIgnored};
 
@@ -38,6 +38,7 @@ impl Plugin for WeatherPlugin {
             .register_type::<WeatherMode>()
             .register_type::<ArtistControls>()
             .register_type::<WaterByHand>()
+            .register_type::<RainTypeTable>()
             .register_type::<WeatherState>()
             .snapshot_part::<WeatherPart>("weather")
             .hash_with("weather", |world, hasher| {
@@ -49,7 +50,11 @@ impl Plugin for WeatherPlugin {
             .add_systems(
                 RainTick,
                 (
-                    (systems::choose_weather, systems::check_weather)
+                    (
+                        systems::choose_weather,
+                        systems::follow_rain_types,
+                        systems::check_weather,
+                    )
                         .chain()
                         .in_set(RainSystems::Input),
                     systems::advance_weather.in_set(RainSystems::Weather),

@@ -4,7 +4,7 @@ use bevy_ecs::change_detection::DetectChanges;
 use bevy_ecs::prelude::*;
 use rain_core::weather::ArtistSettings;
 
-use super::components::{ArtistControls, WaterByHand, Weather, WeatherMode, WeatherTimeline};
+use super::components::{ArtistControls, RainTypeTable, WaterByHand, Weather, WeatherMode, WeatherTimeline};
 use super::state::WeatherState;
 use crate::clock::RainClock;
 use crate::error::RainConfigError;
@@ -67,6 +67,19 @@ pub(super) fn choose_weather(
         }
     }
     active.ignored = others.to_vec();
+}
+
+/// Reads the speeds of the present rain out of the table; under a timeline, of the rain at the end of the last tick.
+pub(super) fn follow_rain_types(
+    active: Res<ActiveWeather>,
+    mut weathers: Query<(&Weather, &RainTypeTable, &mut ArtistControls)>,
+) {
+    let Some((weather, table, mut controls)) = active.entity().and_then(|e| weathers.get_mut(e).ok()) else {
+        return;
+    };
+    let row = table.0.at(weather.intensity_mm_h);
+    let settings = row.settings(&controls.0);
+    controls.set_if_neq(ArtistControls(settings));
 }
 
 /// Takes over what the user changed, if it is valid.

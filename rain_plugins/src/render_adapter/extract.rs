@@ -15,13 +15,14 @@ use rain_core::rainfall::Container;
 use rain_render::cover::CoverPlacement;
 use rain_render::gpu_types::WaterLook;
 use rain_render::rainfall::Shutter;
+use rain_render::water_map::WaterMapPlace;
 
 use super::RainMasks;
 use crate::cover::CoverMap;
 use crate::rainfall::{RainViewFrame, ViewMotion};
 use crate::surface::{
-    GroundFilms, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages, WaterLevels, WaveNormalMaps,
-    wind_slope_variance,
+    GroundFilms, GroundMap, MapHandover, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages,
+    WaterLevels, WaveNormalMaps, wind_slope_variance,
 };
 use crate::waves::{Handover, PuddleWaves, RainRings};
 
@@ -87,6 +88,7 @@ pub(super) struct ExtractedSurface {
 pub(super) struct ExtractedWaterImages {
     pub levels: AssetId<Image>,
     pub films: AssetId<Image>,
+    pub map: AssetId<Image>,
     pub reflection: AssetId<Image>,
     pub ripples: AssetId<Image>,
     pub waves: AssetId<Image>,
@@ -132,6 +134,32 @@ pub(super) fn extract_waves(mut main: ResMut<MainWorld>, mut extracted: ResMut<E
             let shown = tile.has_water() && !waves.is_off();
             extracted.wave_tile_m = shown.then(|| (DVec2::from(tile.corner_m()), tile.side_m()));
         }
+    }
+}
+
+/// The water map: this frame's work and where it lies.
+#[derive(Resource, Default)]
+pub(super) struct ExtractedMap {
+    pub work: MapHandover,
+    /// `None`: there is no map.
+    pub place: Option<WaterMapPlace>,
+    /// Set when the device was lost.
+    pub lost: bool,
+}
+
+/// Takes this frame's work on the water map out of the main world; its lists go back and forth.
+pub(super) fn extract_map(mut main: ResMut<MainWorld>, mut extracted: ResMut<ExtractedMap>) {
+    let lost = std::mem::take(&mut extracted.lost);
+    extracted.place = None;
+    extracted.work.wanted = false;
+    if let Some(mut map) = main.get_resource_mut::<GroundMap>() {
+        let map = map.bypass_change_detection();
+        if lost {
+            map.lose();
+        } else {
+            std::mem::swap(&mut map.handover, &mut extracted.work);
+        }
+        extracted.place = Some(map.map().place());
     }
 }
 
@@ -221,6 +249,7 @@ pub(super) fn extract_rain(
             images: images.as_ref().map(|i| ExtractedWaterImages {
                 levels: i.levels.id(),
                 films: i.films.id(),
+                map: i.map.id(),
                 reflection: i.reflection.id(),
                 ripples: i.ripples.id(),
                 waves: i.waves.id(),

@@ -33,6 +33,7 @@ use bevy::render::sync_component::SyncComponent;
 use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 
 use rain_render::reflection::REFLECTION_FORMAT;
+use rain_render::water_map::WaterMapSettings;
 
 pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
 
@@ -127,6 +128,20 @@ pub(crate) fn level_image(texels: u32) -> Image {
 pub(crate) fn film_image(texels: u32) -> Image {
     let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
     gpu_image("rain ground films", texels, texels, TextureFormat::Rgba16Float, usage)
+}
+
+/// A half-precision texture of the water map, sampled with repeat; of one texel where there is none.
+pub(crate) fn map_image(settings: Option<WaterMapSettings>) -> Image {
+    let descriptor = settings.unwrap_or_default().map_texture();
+    let texels = if settings.is_some() { descriptor.size.width } else { 1 };
+    let mut image = gpu_image("rain water map", texels, texels, descriptor.format, descriptor.usage);
+    image.texture_descriptor.size.depth_or_array_layers = descriptor.size.depth_or_array_layers;
+    // With one level, too.
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2Array),
+        ..default()
+    });
+    image
 }
 
 /// A tiling texture of water slopes with all its mips; see `rain_render::slope_mips`.
@@ -263,9 +278,16 @@ impl Plugin for RainRenderPlugin {
             .insert_resource(report)
             .init_gpu_resource::<prepare::RainGpu>()
             .init_resource::<extract::ExtractedWaves>()
-            .add_systems(ExtractSchedule, (extract::extract_rain, extract::extract_waves))
+            .init_resource::<extract::ExtractedMap>()
+            .add_systems(
+                ExtractSchedule,
+                (extract::extract_rain, extract::extract_waves, extract::extract_map),
+            )
             .add_systems(Render, prepare::prepare_rain.in_set(RenderSystems::PrepareBindGroups))
-            .add_systems(RenderGraph, record::water.before(camera_driver))
+            .add_systems(
+                RenderGraph,
+                (record::water_map, record::water).chain().before(camera_driver),
+            )
             .add_systems(
                 Core3d,
                 (

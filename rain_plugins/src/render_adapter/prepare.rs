@@ -13,16 +13,17 @@ use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa};
 use rain_render::compose;
-use rain_render::cover::open_sky;
-use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams};
+use rain_render::cover::{CoverPlacement, open_sky};
+use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams, WaterMapPlaces};
 use rain_render::masks::{GroundMaps, MaskGpu};
 use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
 use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
 use rain_render::ring_layers::{RingLayerGpu, RingLayersGpu};
 use rain_render::slope_mips::SlopeMipsGpu;
+use rain_render::water_map::{WaterMapGpu, WaterMapInput, WaterMapPasses};
 use rain_render::waves::{WaveTileGpu, WavesGpu};
 
-use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
+use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
 use crate::report::RainReport;
 
 /// Everything on the GPU that lives with the device; rebuilt after a device loss.
@@ -42,6 +43,10 @@ pub(super) struct RainGpu {
     pub wave_tile: Option<WaveTileGpu>,
     pub ring_layers: RingLayersGpu,
     pub ring_layer_tile: Option<RingLayerGpu>,
+    pub map_passes: WaterMapPasses,
+    pub water_map: Option<WaterMapGpu>,
+    /// Where the cover map was drawn last: what its texture shows before this frame draws it anew.
+    cover_drawn: Option<CoverPlacement>,
     /// Which levels of standing water the texture holds.
     levels_version: Option<u64>,
     /// Which films of the ground.
@@ -59,6 +64,9 @@ impl FromWorld for RainGpu {
         if let Some(mut waves) = world.get_resource_mut::<ExtractedWaves>() {
             waves.lost |= lost;
         }
+        if let Some(mut map) = world.get_resource_mut::<ExtractedMap>() {
+            map.lost |= lost;
+        }
         let device = world.resource::<RenderDevice>().wgpu_device();
         Self {
             rainfall: RainfallGpu::new(device),
@@ -74,6 +82,9 @@ impl FromWorld for RainGpu {
             wave_tile: None,
             ring_layers: RingLayersGpu::new(device),
             ring_layer_tile: None,
+            map_passes: WaterMapPasses::new(device),
+            water_map: None,
+            cover_drawn: None,
             levels_version: None,
             films_version: None,
         }
@@ -156,10 +167,49 @@ fn prepare_waves(
     }
 }
 
+/// Uploads this frame's work on the water map.
+fn prepare_map(
+    gpu: &mut RainGpu,
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    images: &RenderAssets<GpuImage>,
+    scene: &ExtractedRainScene,
+    map: &mut ExtractedMap,
+) {
+    // The pass runs before a map of what covers that this frame draws anew.
+    let before = gpu.cover_drawn;
+    let cover = scene.cover.as_ref();
+    gpu.cover_drawn = cover.and_then(|c| c.placement);
+    let placement = cover.and_then(|c| if c.redraw { before } else { c.placement });
+    let ids = scene.surface.as_ref().and_then(|s| s.images);
+    let (Some(ids), Some(place), true) = (ids, map.place, map.work.wanted) else {
+        return;
+    };
+    let Some(image) = images.get(ids.map) else {
+        // Not made yet: the host starts anew.
+        (map.lost, map.work.wanted, map.place) = (true, false, None);
+        return;
+    };
+    let tile = gpu
+        .water_map
+        .get_or_insert_with(|| WaterMapGpu::new(device, &gpu.map_passes, place.settings(), &image.texture));
+    let cover_map = cover.and_then(|c| images.get(c.image)).filter(|_| placement.is_some());
+    let origin = map.work.frame.origin_m();
+    let input = WaterMapInput {
+        cover: placement.map_or_else(open_sky, |placement| placement.params(origin)),
+        cover_map: cover_map.map(|i| -> &wgpu::TextureView { &i.texture_view }),
+        levels: images
+            .get(ids.levels)
+            .map(|i| -> &wgpu::TextureView { &i.texture_view }),
+    };
+    tile.prepare(device, queue, &gpu.map_passes, &map.work.frame, &input);
+}
+
 /// What wet materials read, relative to an eye.
 fn surface_params(
     surface: Option<&ExtractedSurface>,
     waves: &ExtractedWaves,
+    map: &ExtractedMap,
     cover: CoverParams,
     eye: Vec3,
 ) -> SurfaceParams {
@@ -214,6 +264,9 @@ fn surface_params(
         levels,
         water,
         mirrors,
+        map: map
+            .place
+            .map_or_else(WaterMapPlaces::default, |place| place.seen_from(origin.xz().to_array())),
     }
 }
 
@@ -226,6 +279,7 @@ pub(super) fn prepare_rain(
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
     waves: Res<ExtractedWaves>,
+    mut map: ResMut<ExtractedMap>,
     views: Query<(
         Entity,
         &ExtractedView,
@@ -244,7 +298,9 @@ pub(super) fn prepare_rain(
         (Some(placement), Some(_)) => placement.params(eye),
         _ => open_sky(),
     };
-    let surface_params = |eye: Vec3| surface_params(scene.surface.as_ref(), &waves, cover_at(eye.as_dvec3()), eye);
+    prepare_map(gpu, device, &queue, &images, &scene, &mut map);
+    let surface_params =
+        |eye: Vec3| surface_params(scene.surface.as_ref(), &waves, &map, cover_at(eye.as_dvec3()), eye);
     if let Some(surface) = scene.surface.as_ref().filter(|s| s.shown) {
         prepare_ground(gpu, &queue, &images, surface);
     }
@@ -347,7 +403,7 @@ pub(super) fn prepare_rain(
     let water = scene.surface.as_ref().and_then(|s| s.images);
     let water = water
         .iter()
-        .flat_map(|i| [i.levels, i.films, i.ripples, i.waves, i.reflection]);
+        .flat_map(|i| [i.levels, i.films, i.map, i.ripples, i.waves, i.reflection]);
     let textures = water.chain(cover.map(|c| c.image)).filter_map(|id| images.get(id));
     let tiles = [&gpu.ripple_tile, &gpu.wave_tile].into_iter().flatten();
     report.gpu_memory(
@@ -357,6 +413,7 @@ pub(super) fn prepare_rain(
                 .ring_layer_tile
                 .as_ref()
                 .map_or(0, |tile| tile.memory_bytes() as usize)
+            + gpu.water_map.as_ref().map_or(0, |map| map.memory_bytes() as usize)
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>(),
     );
 }

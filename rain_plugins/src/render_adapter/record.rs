@@ -13,7 +13,7 @@ use rain_render::masks::MaskTargets;
 use rain_render::rainfall::{encode_coverage, encode_draw, encode_project};
 use rain_render::reflection::encode_reflection_mips;
 
-use super::extract::{ExtractedRainScene, ExtractedRainView, ExtractedWaves};
+use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedWaves};
 use super::prepare::RainGpu;
 use crate::cover::RainCoverView;
 use crate::report::{PassName, RainReport};
@@ -47,6 +47,24 @@ pub(super) fn keep_cover_map(
         .complete
         .store(pipelines.waiting_pipelines().next().is_none(), Relaxed);
     report.recorded(PassName::Cover);
+}
+
+/// Lets the weather and wheels act on the water map, before any view is drawn.
+pub(super) fn water_map(gpu: Res<RainGpu>, map: Res<ExtractedMap>, report: Res<RainReport>, mut ctx: RenderContext) {
+    let Some(texels) = gpu.water_map.as_ref().filter(|_| map.work.wanted) else {
+        return;
+    };
+    let recorder = ctx.diagnostic_recorder();
+    let recorder = recorder.as_deref();
+    let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("rain_water_map"),
+        timestamp_writes: None,
+    });
+    let span = recorder.pass_span(&mut pass, "rain_water_map");
+    texels.encode(&mut pass, &gpu.map_passes);
+    span.end(&mut pass);
+    drop(pass);
+    report.recorded(PassName::WaterMap);
 }
 
 /// Moves rings and waves on, before any view is drawn.

@@ -31,6 +31,9 @@ pub struct WetSurface {
     /// Noise puddles: present, height map, width of the drenched ground, share of the noise.
     #[uniform(100)]
     pub noise_flags: Vec4,
+    /// Look (0 physical, else a source's rules), fixed state (0 none, 1 dry … 4 puddle), ground only; w unused.
+    #[uniform(100)]
+    pub look: Vec4,
     /// The cover map.
     #[texture(101, sample_type = "depth")]
     pub cover: Handle<Image>,
@@ -56,6 +59,9 @@ pub struct WetSurface {
     /// Films and pores of the ground.
     #[texture(109)]
     pub films: Handle<Image>,
+    /// The same around the view, finer.
+    #[texture(110, dimension = "2d_array")]
+    pub map: Handle<Image>,
     /// Normal maps of waves, where there are any.
     #[texture(114)]
     pub wave_normals: Option<Handle<Image>>,
@@ -98,7 +104,9 @@ impl Plugin for WetMaterialPlugin {
                 "standing_water",
                 "wind_waves",
                 "placed_water",
+                "artist_look",
                 "ground_memory",
+                "water_map",
             ]
             .contains(&library.name)
             {

@@ -26,7 +26,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 pub use super::captures::{Captures, RunUp};
 use super::expectation::Expectation;
 use super::weather::Weather;
-use crate::surface::WaterAppearance;
+use crate::surface::{WaterAppearance, WetLook};
 
 /// A point or vector: x, y (up), z. Units: metres, or m/s for velocities.
 pub type Vector = [f64; 3];
@@ -436,6 +436,8 @@ pub struct RainSettings {
     /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0005, 0.25].
     /// Default: 1/60.
     pub exposure_s: f64,
+    /// Whose rules wet surfaces look by: `Physical`, `Lagarde`, `LagardePorous`, `Nguyenova`. Default: `Physical`.
+    pub look: WetLook,
     /// Where rings on water come from. Default: `Drops`.
     pub rings: Rings,
 }
@@ -460,6 +462,7 @@ impl Default for RainSettings {
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
             rings: Rings::default(),
+            look: WetLook::Physical,
         }
     }
 }

@@ -71,7 +71,7 @@ Scenario(
         ],
         interpolation: CatmullRom,
     ),
-    rain: (enabled: true, streak_budget: 100000, contrast: 6, exposure_s: 0.008),
+    rain: (enabled: true, streak_budget: 100000, contrast: 6, exposure_s: 0.008, look: LagardePorous),
     captures: Even(start_s: 60, end_s: 600, count: 4),
     outputs: (size: (640, 360), frames: true, masks: [Rain, Wet, Depth], contact_sheet: true, timeline: false),
     domain: (min: (-20, -30), max: (20, 30)),

@@ -381,6 +381,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
         .map(|(name, record)| {
             let spans: &[&str] = match name.as_str() {
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
+                "water_map" => &["rain_water_map"],
                 "ripples" => &["rain_ripples"],
                 "waves" => &["rain_waves"],
                 _ => &[],

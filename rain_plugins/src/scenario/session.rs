@@ -88,6 +88,7 @@ impl Session {
         let mut app = App::new();
         app.add_plugins((headless::plugins(), RenderDiagnosticsPlugin));
         app.insert_resource(RainSeed(scenario.seed));
+        app.insert_resource(scenario.rain.look);
         app.init_resource::<Pictured>().init_resource::<Returned>();
         if scenario.rain.enabled {
             app.add_plugins(RainPlugins).insert_resource(WaveWaterSettings {
@@ -102,6 +103,7 @@ impl Session {
         super::mips::add_mips(&mut app);
         if scenario.rain.enabled {
             stage::weather(&mut app, scenario)?;
+            stage::move_in_ticks(&mut app);
         }
         stage::pose(&mut app, 0.0);
         // One still update: the app's own systems see the dressed scene before time runs.

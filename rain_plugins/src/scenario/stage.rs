@@ -405,7 +405,8 @@ pub(super) fn dress(app: &mut App, scenario: &Scenario) {
                     radius_m,
                 };
                 let disturber = WaterDisturber { radius_m, ..default() };
-                world.entity_mut(entity).insert((wheel, disturber));
+                let press = FilmPress::wheel(radius_m);
+                world.entity_mut(entity).insert((wheel, disturber, press));
             }
         }
     }
@@ -424,17 +425,50 @@ pub(super) fn dress(app: &mut App, scenario: &Scenario) {
     }
 }
 
+impl OnPath {
+    fn pose_at(&self, time_s: f64) -> Transform {
+        let pose = self.path.at(time_s);
+        Transform {
+            translation: Vec3::from_array(pose.position.map(|v| v as f32)),
+            rotation: Quat::from_rotation_y(pose.yaw_rad as f32),
+            scale: Vec3::splat(self.scale),
+        }
+    }
+}
+
+/// Time of the frame that is being made. Units: s.
+#[derive(Resource, Default)]
+struct FrameTime(f64);
+
+/// Has vehicles move in the simulation's ticks too: what they do to the ground does not depend on frames.
+pub(super) fn move_in_ticks(app: &mut App) {
+    app.init_resource::<FrameTime>()
+        .add_systems(RainTick, pose_for_tick.in_set(RainSystems::Input))
+        .add_systems(Update, pose_for_frame);
+}
+
+fn pose_for_tick(clock: Res<RainClock>, mut vehicles: Query<(&OnPath, &mut Transform)>) {
+    for (vehicle, mut transform) in &mut vehicles {
+        transform.set_if_neq(vehicle.pose_at(clock.now_s()));
+    }
+}
+
+fn pose_for_frame(time: Res<FrameTime>, mut vehicles: Query<(&OnPath, &mut Transform)>) {
+    for (vehicle, mut transform) in &mut vehicles {
+        transform.set_if_neq(vehicle.pose_at(time.0));
+    }
+}
+
 /// Puts vehicles, wheels and camera where they are at `time_s`.
 pub(super) fn pose(app: &mut App, time_s: f64) {
     let world = app.world_mut();
+    if let Some(mut frame) = world.get_resource_mut::<FrameTime>() {
+        frame.0 = time_s;
+    }
     let mut turned = Vec::new();
     for (entity, vehicle, mut transform) in world.query::<(Entity, &OnPath, &mut Transform)>().iter_mut(world) {
         let pose = vehicle.path.at(time_s);
-        let next = Transform {
-            translation: Vec3::from_array(pose.position.map(|v| v as f32)),
-            rotation: Quat::from_rotation_y(pose.yaw_rad as f32),
-            scale: Vec3::splat(vehicle.scale),
-        };
+        let next = vehicle.pose_at(time_s);
         // A vehicle that stands must not count as moved.
         transform.set_if_neq(next);
         turned.push((entity, next, wheel_angle_rad(pose.distance_m, vehicle.wheel_radius_m)));

@@ -18,6 +18,13 @@ pub struct LevelsFromGround {
     shown: Option<(u64, u64, UVec2)>,
 }
 
+impl LevelsFromGround {
+    /// Build of the ground and first cell that are shown, if the levels come from it.
+    pub(super) fn window(&self) -> Option<(u64, UVec2)> {
+        self.shown.map(|(builds, _, first)| (builds, first))
+    }
+}
+
 /// Films and pores of the ground, for the picture; in the cells of [`WaterLevels`].
 ///
 /// What the ground remembers is seen: a floor that dries slowly under a new roof, a road that stays wet under a car that

@@ -5,18 +5,21 @@ use std::collections::BTreeMap;
 use bevy::asset::{AssetEventSystems, AssetId};
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
+use rain_core::surface::SurfaceState;
 use rain_ecs::prelude::*;
 
 use super::dynamic::{OwnWetness, give_own_wetness};
 use super::geometry::SceneGeometryPlugin;
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
+use super::look::WetLook;
+use super::map::{GroundMap, GroundMapSettings, create_map, follow_map};
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirrors};
-use super::state::{SurfaceState, create_state, follow_weather};
+use super::state::{self, create_state, follow_weather};
 use super::water::{LEVEL_TEXELS, WaterAppearance, WaterImages, WaterLevels, WaveNormalMaps};
 use crate::cover::CoverMap;
 use crate::render_adapter::{
-    RenderApp, WetMaterial, WetSurface, film_image, level_image, reflection_image, slope_image,
+    RenderApp, WetMaterial, WetSurface, film_image, level_image, map_image, reflection_image, slope_image,
 };
 use crate::schedule::RainViewSystems;
 
@@ -36,6 +39,13 @@ pub struct SurfaceWetting {
     /// Wetness of the pores set by hand, whatever the weather and the cover; films and puddles stay the weather's.
     /// Domain: [0, 1]. `None`: the weather's.
     pub wetness: Option<f32>,
+    /// Whose rules it looks by. `None`: the [`WetLook`] of all.
+    pub look: Option<WetLook>,
+    /// Shows this state always, whatever the weather: dry, wet, drenched or puddle (which its level faces alone can be).
+    #[reflect(ignore)]
+    pub state: Option<SurfaceState>,
+    /// Whether only faces that look up get wet: walls stay dry, also in slanted rain. Default: false.
+    pub ground_only: bool,
 }
 
 impl Default for SurfaceWetting {
@@ -44,6 +54,9 @@ impl Default for SurfaceWetting {
             strength: 1.0,
             porosity: None,
             wetness: None,
+            look: None,
+            state: None,
+            ground_only: false,
         }
     }
 }
@@ -62,6 +75,18 @@ impl SurfaceWetting {
             0.0,
             self.wetness.map_or(-1.0, |w| finite(w, 0.0)),
         )
+    }
+
+    /// See `look` in the wet material's shader; `look` is that of all.
+    fn look_uniform(self, look: WetLook) -> Vec4 {
+        let state = self.state.map_or(0.0, |state| match state {
+            SurfaceState::Dry => 1.0,
+            SurfaceState::Wet => 2.0,
+            SurfaceState::Drenched => 3.0,
+            SurfaceState::Puddle => 4.0,
+        });
+        let ground_only = f32::from(u8::from(self.ground_only));
+        Vec4::new(self.look.unwrap_or(look).number(), state, ground_only, 0.0)
     }
 }
 
@@ -87,7 +112,7 @@ impl OriginalMaterialItem<'_, '_> {
 /// How a mesh takes water: what wet copies of one material differ by.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct WetKey {
-    uniform: [[u32; 4]; 5],
+    uniform: [[u32; 4]; 6],
     painted: Option<AssetId<Image>>,
 }
 
@@ -105,6 +130,7 @@ impl Plugin for WetSurfacePlugin {
             return; // a server has no materials
         }
         SceneGeometryPlugin::add_to(app);
+        super::auto_paint::build(app);
         app.register_type::<KeepDry>()
             .register_type::<SurfaceWetting>()
             .register_type::<PlanarReflection>()
@@ -113,23 +139,32 @@ impl Plugin for WetSurfacePlugin {
             .register_type::<RainMirrorView>()
             .register_type::<ReflectionSize>()
             .register_type::<WaterAppearance>()
+            .register_type::<WetLook>()
             .init_resource::<WetCopies>()
             .init_resource::<MirrorFrame>()
             .init_resource::<ReflectionSize>()
             .register_type::<WaveNormalMaps>()
             .init_resource::<WaterAppearance>()
             .init_resource::<WaveNormalMaps>()
+            .init_resource::<WetLook>()
             .init_resource::<WaterLevels>()
             .init_resource::<LevelsFromGround>()
             .init_resource::<GroundFilms>()
-            .add_systems(Startup, (create_state, create_images))
+            .init_resource::<GroundMapSettings>()
+            .add_systems(Startup, (create_state, create_map, create_images).chain())
             .add_systems(
                 PostUpdate,
                 (
                     give_own_wetness,
                     check_appearance.run_if(resource_changed::<WaterAppearance>),
                     follow_wave_maps.run_if(resource_changed::<WaveNormalMaps>),
-                    (follow_weather, follow_ground, follow_films, aim_mirrors)
+                    (
+                        follow_weather,
+                        follow_ground,
+                        follow_films,
+                        follow_map.run_if(resource_exists::<GroundMap>),
+                        aim_mirrors,
+                    )
                         .chain()
                         .in_set(RainViewSystems::Surfaces),
                     // Bevy looks for changed materials after its asset events. A swap that it sees a frame late is drawn
@@ -147,7 +182,7 @@ impl Plugin for WetSurfacePlugin {
                         .chain()
                         .before(AssetEventSystems),
                 )
-                    .run_if(resource_exists::<SurfaceState>),
+                    .run_if(resource_exists::<state::SurfaceState>),
             );
     }
 }
@@ -174,10 +209,11 @@ fn both(images: Option<&[Handle<Image>; 2]>) -> [Option<Handle<Image>>; 2] {
     images.map_or([None, None], |images| images.clone().map(Some))
 }
 
-fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
+fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, map: Option<Res<GroundMap>>) {
     commands.insert_resource(WaterImages {
         levels: images.add(level_image(LEVEL_TEXELS)),
         films: images.add(film_image(LEVEL_TEXELS)),
+        map: images.add(map_image(map.map(|map| *map.map().settings()))),
         ripples: images.add(slope_image(256)),
         waves: images.add(slope_image(256)),
         // Of no size before a view asks for a mirror.
@@ -186,7 +222,7 @@ fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
 }
 
 /// Painted meshes wear the wet material also when dry: their vertex colours are no tint.
-fn something_is_wet(surface: Res<SurfaceState>) -> bool {
+fn something_is_wet(surface: Res<state::SurfaceState>) -> bool {
     surface.shown
 }
 
@@ -222,7 +258,8 @@ struct Wettable {
 /// Gives every mesh that has none a wet copy of its material.
 fn wet_meshes(
     mut commands: Commands,
-    surface: Res<SurfaceState>,
+    surface: Res<state::SurfaceState>,
+    look: Res<WetLook>,
     map: Res<CoverMap>,
     water: Res<WaterImages>,
     wave_maps: Res<WaveNormalMaps>,
@@ -258,12 +295,13 @@ fn wet_meshes(
         // What does not validate counts as absent.
         let paint = mesh.paint.and_then(|p| p.validated().map_err(&mut refuse).ok());
         let noise = mesh.noise.and_then(|n| n.validated().map_err(&mut refuse).ok());
-        let mut wetting = mesh.wetting.copied().unwrap_or_default().uniform();
+        let refined = mesh.wetting.copied().unwrap_or_default();
+        let (mut wetting, look) = (refined.uniform(), refined.look_uniform(*look));
         wetting.z = f32::from(u8::from(mesh.own.is_some()));
         let [paint_uniform, paint_flags] = paint.map_or([Vec4::ZERO; 2], PuddlePaint::uniform);
         let [noise_uniform, noise_flags] = noise.map_or([Vec4::ZERO; 2], NoisePuddles::uniform);
         let painted = paint.and_then(PuddlePaint::texture);
-        let uniform = [wetting, paint_uniform, paint_flags, noise_uniform, noise_flags];
+        let uniform = [wetting, paint_uniform, paint_flags, noise_uniform, noise_flags, look];
         let key = WetKey {
             uniform: uniform.map(|v| v.to_array().map(f32::to_bits)),
             painted: painted.as_ref().map(Handle::id),
@@ -278,10 +316,12 @@ fn wet_meshes(
                     paint_flags,
                     noise: noise_uniform,
                     noise_flags,
+                    look,
                     cover: map.image.clone(),
                     params: surface.handles.params.clone(),
                     levels: water.levels.clone(),
                     films: water.films.clone(),
+                    map: water.map.clone(),
                     ripples: water.ripples.clone(),
                     waves: water.waves.clone(),
                     reflection: water.reflection.clone(),
@@ -298,23 +338,33 @@ fn wet_meshes(
     }
 }
 
-/// A mesh whose way to take water changed gets its own material back, from which it is made wet anew.
+type ChangedWetting = Or<(
+    Changed<SurfaceWetting>,
+    Changed<PuddlePaint>,
+    Changed<NoisePuddles>,
+    Added<OwnWetness>,
+)>;
+
+/// A mesh whose way to take water changed gets its own material back, from which it is made wet anew; all of them when
+/// the look of all has changed.
 fn follow_settings(
     mut commands: Commands,
-    meshes: Query<
-        (Entity, &DryMaterial),
-        (
-            With<MeshMaterial3d<WetMaterial>>,
-            Or<(
-                Changed<SurfaceWetting>,
-                Changed<PuddlePaint>,
-                Changed<NoisePuddles>,
-                Added<OwnWetness>,
-            )>,
-        ),
-    >,
+    mut shown: Local<WetLook>,
+    look: Res<WetLook>,
+    changed: Query<(Entity, &DryMaterial), (With<MeshMaterial3d<WetMaterial>>, ChangedWetting)>,
+    all: Query<(Entity, &DryMaterial), With<MeshMaterial3d<WetMaterial>>>,
+    (mut wetting, mut paint, mut noise): (
+        RemovedComponents<SurfaceWetting>,
+        RemovedComponents<PuddlePaint>,
+        RemovedComponents<NoisePuddles>,
+    ),
 ) {
-    for (entity, dry) in &meshes {
+    let everything = std::mem::replace(&mut *shown, *look) != *look;
+    let gone = wetting.read().chain(paint.read()).chain(noise.read());
+    let gone: Vec<Entity> = gone.filter(|_| !everything).collect();
+    let changed = changed.iter().filter(|_| !everything);
+    let gone = gone.into_iter().filter_map(|entity| all.get(entity).ok());
+    for (entity, dry) in changed.chain(gone).chain(all.iter().filter(|_| everything)) {
         commands
             .entity(entity)
             .insert(MeshMaterial3d(dry.0.clone()))

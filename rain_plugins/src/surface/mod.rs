@@ -4,10 +4,13 @@
 //! given an extended copy that reads the cover map and the weather's wetness; when all has dried the originals return.
 //! Changes that the app makes to the originals meanwhile are followed.
 
+mod auto_paint;
 mod dynamic;
 mod gaps;
 mod geometry;
 mod ground;
+mod look;
+mod map;
 mod materials;
 mod paint;
 mod reflection;
@@ -15,11 +18,15 @@ mod state;
 mod triangles;
 mod water;
 
+pub use auto_paint::{AutoPaint, AutoPaintDone, AutoPaintError, PaintedMesh};
 pub use dynamic::OwnWetness;
 pub use gaps::{Gap, LeftOut, SceneGap};
 pub use geometry::MovesInRain;
 pub(crate) use geometry::SceneGeometryPlugin;
 pub use ground::{GroundFilms, LevelsFromGround};
+pub use look::WetLook;
+pub(crate) use map::MapHandover;
+pub use map::{GroundMap, GroundMapSettings};
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
 pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
 pub use reflection::{MirrorFrame, MirrorView, PlanarReflection, RainMirrorView, ReflectionSize};

@@ -36,8 +36,10 @@ pub struct SurfaceState {
     pub anchor: Vec3,
     /// Something is wet, water stands in a puddle, or rain falls.
     pub wet: bool,
-    /// Wet materials are in the scene: something is wet, or painted.
+    /// Wet materials are in the scene: something is wet, painted, or of a fixed state.
     pub shown: bool,
+    /// A mesh shows a fixed state whatever the weather: a puddle, perhaps.
+    pub placed: bool,
     /// The buffer that the shaders read.
     pub handles: WetSurfaceHandles,
 }
@@ -55,6 +57,7 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
             anchor: Vec3::ZERO,
             wet: false,
             shown: false,
+            placed: false,
             handles: handles.clone(),
         });
     }
@@ -67,10 +70,11 @@ pub(super) fn follow_weather(
     weather: Query<&WeatherState>,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
     painted: Query<(), With<PuddlePaint>>,
-    wetted: Query<&SurfaceWetting>,
+    refined: Query<&SurfaceWetting>,
     levels: Res<WaterLevels>,
 ) {
-    surface.shown = !painted.is_empty() || wetted.iter().any(SurfaceWetting::is_by_hand);
+    surface.placed = refined.iter().any(|wetting| wetting.state.is_some());
+    surface.shown = !painted.is_empty() || surface.placed || refined.iter().any(SurfaceWetting::is_by_hand);
     let eye = leading_view(&views).map(GlobalTransform::translation);
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());

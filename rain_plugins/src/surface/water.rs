@@ -311,6 +311,8 @@ pub struct WaterImages {
     pub levels: Handle<Image>,
     /// Films, pores and heights of the ground (Rgba16Float), see [`super::GroundFilms`].
     pub films: Handle<Image>,
+    /// The same around the view, finer (Rgba16Float, a layer for each level), see [`super::GroundMap`].
+    pub map: Handle<Image>,
     /// Slopes of the rings that drops make, tiling the world (Rgba16Float).
     pub ripples: Handle<Image>,
     /// Slopes of interactive waves near the view (Rgba16Float).

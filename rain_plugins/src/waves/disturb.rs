@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::waves::Push;
+use rain_ecs::prelude::*;
 use rain_render::waves::Disturbance;
 
 use crate::surface::WaterLevels;
@@ -64,6 +65,22 @@ impl WaterContact {
             surface_m,
             depth_m: surface_m.map_or(0.0, |_| levels.depth_at(x, z)),
         }
+    }
+}
+
+/// Impulse of the strongest step: 100 ml of water thrown aside at 3 m/s. Units: N s.
+const STEP_N_S: f32 = 0.3;
+/// Width of a sole. Units: m.
+const SOLE_M: f64 = 0.1;
+
+/// What a foot does to the water that it comes down in.
+pub(super) fn foot_fall(splash: &FootSplash) -> Disturbance {
+    let at = [splash.place.x, splash.place.z].map(f64::from);
+    Disturbance {
+        from_m: at,
+        to_m: at,
+        width_m: SOLE_M / 12.0_f64.sqrt(),
+        push: Push::Impulse(STEP_N_S * splash.strength),
     }
 }
 

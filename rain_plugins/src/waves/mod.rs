@@ -16,6 +16,7 @@ mod rings;
 mod tile;
 
 use bevy::prelude::*;
+use rain_ecs::splash::{FootSplash, FootSystems};
 use rain_render::ring_layers::RingLayerFrame;
 use rain_render::waves::{RippleSettings, RippleTile, WaveFrame, WaveTile, WaveTileSettings};
 
@@ -70,6 +71,7 @@ impl Plugin for WavesPlugin {
         app.register_type::<WaterDisturber>()
             .register_type::<WaterContact>()
             .register_type::<WaveWaterSettings>()
+            .add_message::<FootSplash>()
             .init_resource::<WaveWaterSettings>()
             .add_systems(Startup, create_tiles)
             .add_systems(
@@ -79,7 +81,9 @@ impl Plugin for WavesPlugin {
                     (rings::choose_rings, rings::rain_on_water)
                         .chain()
                         .run_if(resource_exists::<RainRings>),
-                    tile::move_water.run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
+                    tile::move_water
+                        .after(FootSystems)
+                        .run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),
                 )
                     .in_set(RainViewSystems::Views),
             );

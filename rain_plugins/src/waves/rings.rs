@@ -208,11 +208,14 @@ pub(super) fn rain_on_water(
         Some(SkipReason::NoView)
     } else if rings.off || appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
         Some(SkipReason::Disabled)
-    } else if !surface.is_some_and(|s| s.wet) {
+    } else if !surface.as_ref().is_some_and(|s| s.wet) {
         Some(SkipReason::Dry)
     } else if !field.is_raining() && rings.is_idle() {
         Some(SkipReason::NoRain)
-    } else if !levels.is_some_and(|l| l.any_water()) && !placed_water(artist, paints.iter(), noises.iter()) {
+    } else if !levels.is_some_and(|l| l.any_water())
+        && !surface.as_ref().is_some_and(|s| s.placed)
+        && !placed_water(artist, paints.iter(), noises.iter())
+    {
         Some(SkipReason::NoWater)
     } else {
         None

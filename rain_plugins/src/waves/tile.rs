@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use rain_ecs::prelude::*;
 use rain_render::waves::{Disturbance, MAX_DISTURBANCES, WaveTile};
 
-use super::disturb::{DisturberMotion, WaterContact, WaterDisturber};
+use super::disturb::{DisturberMotion, WaterContact, WaterDisturber, foot_fall};
 use super::rings::{FORGOTTEN_NS, seen_ns};
 use super::{Handover, WaveWaterSettings};
 use crate::rainfall::{RainView, leading_view};
@@ -81,6 +81,7 @@ pub(super) fn move_water(
         &mut DisturberMotion,
         &mut WaterContact,
     )>,
+    mut splashes: MessageReader<FootSplash>,
 ) {
     let waves = &mut *waves;
     waves.handover.wanted = false;
@@ -108,6 +109,8 @@ pub(super) fn move_water(
             found.extend(disturbance);
         }
     }
+    let room = if waves.off { 0 } else { MAX_DISTURBANCES - found.len() };
+    found.extend(splashes.read().map(foot_fall).take(room));
     let view = leading_view(&views);
     let reason = match view {
         None => Some(SkipReason::NoView),

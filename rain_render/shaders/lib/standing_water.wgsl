@@ -43,6 +43,14 @@ fn rain_water_fresnel(cos_incidence: f32) -> f32 {
     return 0.5 * (s * s + p * p);
 }
 
+// How bright muddy water is along a ray under water, against its mean: the twin of rain_core::surface::mud_phase.
+// Error: 1e-6.
+fn rain_mud_phase(cos_refracted: f32) -> f32 {
+    let mu = clamp(cos_refracted, 0.0, 1.0);
+    let spread = 1.853776 + 1.848 * mu;
+    return 11.45785 / (spread * sqrt(spread) * (1.0 + mu));
+}
+
 // Albedo of ground of dry albedo `dry` under `depth` m of water, seen or lit at this cosine in the air, without the
 // mirror on top: the twin of rain_core::surface::under_water. Error: 1e-5.
 fn rain_under_water(dry: vec3<f32>, look: WaterLook, depth: f32, cos_incidence: f32) -> vec3<f32> {
@@ -57,8 +65,9 @@ fn rain_under_water(dry: vec3<f32>, look: WaterLook, depth: f32, cos_incidence: 
     let body = rho * (2.0 - gain + (gain - 1.0) * rho);
     let escape = (1.0 - 0.474591) * body / (1.0 - 0.474591 * exp(-loss * 4.6 * depth) * body);
     let ground = enters * exp(-loss * depth / refracted) * exp(-loss * 1.19 * depth) * escape;
-    let hidden = 1.0 - exp(-turbidity * depth * (1.0 / refracted + 1.19));
-    return ground + enters * look.mud.xyz * hidden * turbidity / max(loss, vec3<f32>(1e-9));
+    let met = 1.0 - exp(-loss * depth * (1.0 / refracted + 1.19));
+    let mud = min(look.mud.xyz * rain_mud_phase(refracted), vec3<f32>(1.0));
+    return ground + enters * mud * met * turbidity / max(loss, vec3<f32>(1e-9));
 }
 
 // What lies aslant (x, z) in a texel of a normal map whose picture's right is x and down is z.

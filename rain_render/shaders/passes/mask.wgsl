@@ -53,7 +53,8 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
         * rain_catch(normal.y, dot(normal, to_rain));
     // As the wet material shows it: the weather's wetness where the rain reaches, what the ground remembers on it, and
     // all soaked under a puddle.
-    let ground = rain_remembered(film_map, film_sampler, view.surface.levels, p);
+    let films = rain_film_texel(film_map, film_sampler, view.surface.levels, p);
+    let ground = rain_memory_of(view.surface.levels, p, films);
     let wet = mix(rain_point_wetness(view.surface.state, exposure), ground.x, rain_memory_share(ground.z, normal.y));
     let depth_of_water = rain_standing_water(level_map, view.surface.levels, p);
     let puddle = rain_puddle_rim(depth_of_water) * smoothstep(0.85, 0.95, normal.y);

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::bindings::{storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{one_texel, storage_entry, texture_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::{RainfallView, Streak};
 use crate::rainfall::RainfallInput;
@@ -51,31 +51,6 @@ pub struct RainfallViewGpu {
     pub(super) drops: u32,
     pub(super) project: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
-}
-
-fn one_texel(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, layers: u32) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d {
-            width: 1,
-            height: 1,
-            depth_or_array_layers: layers,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(if layers == 6 {
-            wgpu::TextureViewDimension::Cube
-        } else {
-            wgpu::TextureViewDimension::D2
-        }),
-        ..Default::default()
-    })
 }
 
 impl RainfallGpu {

@@ -8,9 +8,10 @@ use proptest::prelude::*;
 use rain_core::rainfall::{Distribution, Spectrum, terminal_velocity};
 use rain_core::splash::{
     Impact, ImpactFlux, ImpactNumbers, Splash, SplashKind, TrafficSplashes, artist_splashes_per_m2_s, crater_radius_m,
-    crown_height_m, crown_life_s, crown_opacity, crown_radius_m, crown_radius_m_f32, for_each_impact, hashed_poisson,
-    impact_energy_j, impact_momentum_kg_m_s, secondary_drop, splash_excess, splash_excess_f32, splash_image_life_s,
-    splash_k, splash_k_f32, splash_threshold_diameter_mm, splash_threshold_k, splashes_per_m2_s, water_drop_kg,
+    crown_height_m, crown_life_s, crown_opacity, crown_radius_m, crown_radius_m_f32, foot_splash_strength,
+    for_each_impact, hashed_poisson, impact_energy_j, impact_momentum_kg_m_s, secondary_drop, splash_excess,
+    splash_excess_f32, splash_image_life_s, splash_k, splash_k_f32, splash_threshold_diameter_mm, splash_threshold_k,
+    splashes_per_m2_s, water_drop_kg,
 };
 use rain_core::weather::{IntensityClass, relative_intensity};
 use rain_reference::fall_speed::measured;
@@ -602,5 +603,28 @@ proptest! {
         // Without wind a slope catches the cosine.
         let still = ImpactFlux::new(&spectrum, 0.2, 9.0, DVec3::new(tilt.sin(), tilt.cos(), 0.0), DVec3::ZERO);
         prop_assert!((still.water_mm_h - level.water_mm_h * tilt.cos()).abs() < 1e-9 * level.water_mm_h);
+    }
+}
+
+#[test]
+fn a_foot_splashes_by_its_speed_and_the_water_under_it() {
+    for (speed, depth, strength) in [(0.0, 0.01, 0.0), (1.0, 0.0, 0.0), (1.0, 0.01, 0.5), (2.0, 0.005, 0.5)] {
+        assert_eq!(foot_splash_strength(speed, depth), strength, "{speed} {depth}");
+    }
+    assert_eq!(foot_splash_strength(9.0, 2.0), 1.0, "never above 1");
+    let mut worst = Worst::default();
+    for i in 0..40 {
+        for j in 0..40 {
+            let (speed, depth) = (f64::from(i) * 0.1, f64::from(j) * 5e-4);
+            let exact = (speed / 2.0).min(1.0) * (depth * 100.0).min(1.0);
+            worst.absolute(foot_splash_strength(speed, depth), exact, || format!("{speed} {depth}"));
+        }
+    }
+    worst.assert_below(3e-16, 1000);
+    for bad in BAD {
+        for other in BAD {
+            let strength = foot_splash_strength(bad, other);
+            assert!((0.0..=1.0).contains(&strength), "{bad} {other}: {strength}");
+        }
     }
 }

@@ -68,12 +68,17 @@ fn depth_map(gpu: &Device, p: &CoverPlacement, heights: &[Option<f64>]) -> wgpu:
         .iter()
         .map(|h| h.map_or(0.0, |h| (1.0 - (p.top_m - h) / p.range_m) as f32))
         .collect();
-    let values = gpu.buffer(bytemuck::cast_slice(&depth), wgpu::BufferUsages::STORAGE);
+    depth_texture(gpu, TEXELS, &depth)
+}
+
+/// Draws depths into a square depth texture.
+pub fn depth_texture(gpu: &Device, texels: u32, depth: &[f32]) -> wgpu::TextureView {
+    let values = gpu.buffer(bytemuck::cast_slice(depth), wgpu::BufferUsages::STORAGE);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d {
-            width: TEXELS,
-            height: TEXELS,
+            width: texels,
+            height: texels,
             depth_or_array_layers: 1,
         },
         mip_level_count: 1,
@@ -92,7 +97,7 @@ fn depth_map(gpu: &Device, p: &CoverPlacement, heights: &[Option<f64>]) -> wgpu:
     return vec4<f32>(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.5, 1.0);
 }}
 @fragment fn fragment(@builtin(position) at: vec4<f32>) -> @builtin(frag_depth) f32 {{
-    return values[u32(at.y) * {TEXELS}u + u32(at.x)];
+    return values[u32(at.y) * {texels}u + u32(at.x)];
 }}"
             )
             .into(),

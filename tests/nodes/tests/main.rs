@@ -1,5 +1,6 @@
 //! The passes against their CPU twins, on a bare device.
 
+mod artist_look;
 mod cover_parity;
 mod device;
 mod far;
@@ -12,5 +13,6 @@ mod ring_layers;
 mod shader_functions;
 mod slope_mips;
 mod water;
+mod water_map;
 mod waves;
 mod wet_albedo;

@@ -3,7 +3,7 @@
 use rain_core::surface::artist_look::{
     crack_water, drenched_share, nguyenova_puddle_amount, painted_puddle_water, screen_blend,
 };
-use rain_core::surface::{Water, puddle_map, under_water};
+use rain_core::surface::{Water, mud_phase, puddle_map, under_water};
 
 use crate::device::{device, kernel, library};
 
@@ -153,6 +153,23 @@ const LOOKS: [Water; 3] = [
         mud_albedo: [0.30, 0.22, 0.13],
     },
 ];
+
+#[test]
+fn mud_seen_at_an_angle_is_the_cpus() {
+    let input = grid(&[-0.5, 0.0, 0.3, 0.66, 0.7, 0.85, 1.0, 2.0], &[0.0], 0.0, 0.0);
+    let Some(found) = evaluate("vec4<f32>(rain_mud_phase(v.x))", &input) else {
+        return;
+    };
+    let off = |shift: f64| {
+        let worst = input
+            .iter()
+            .zip(&found)
+            .map(|(i, f)| (f64::from(f[0]) / mud_phase(f64::from(i[0]) + shift) - 1.0).abs());
+        worst.fold(0.0, f64::max)
+    };
+    assert!(off(0.0) < 1e-6, "{}", off(0.0));
+    assert!(off(0.05) > 0.02, "an angle that is off is found");
+}
 
 #[test]
 fn ground_under_water_is_the_cpus() {

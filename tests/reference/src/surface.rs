@@ -243,3 +243,26 @@ pub fn two_layers(b: f64, n: f64, cos: f64, optical_depth: f64) -> f64 {
     }
     out
 }
+
+/// Light that water of an optical depth scatters once into a ray that goes up with cosine `mu` under water, for an even
+/// sky of radiance 1, without the way out through the surface: scattering over all losses is 1, phase function of Henyey &
+/// Greenstein 1941 with mean cosine `g`. Sum over the cone of refracted sky.
+pub fn scattered_once(mu: f64, g: f64, n: f64, optical_depth: f64) -> f64 {
+    const RINGS: usize = 120;
+    const SPOKES: usize = 60;
+    let edge = (1.0 - 1.0 / (n * n)).sqrt();
+    let mut sum = 0.0;
+    for i in 0..RINGS {
+        let down = edge + (1.0 - edge) * (i as f64 + 0.5) / RINGS as f64;
+        let in_air = (1.0 - n * n * (1.0 - down * down)).max(0.0).sqrt();
+        let way = 1.0 / mu + 1.0 / down;
+        let met = down / (mu + down) * (1.0 - (-optical_depth * way).exp());
+        for j in 0..SPOKES {
+            let turn = core::f64::consts::TAU * (j as f64 + 0.5) / SPOKES as f64;
+            let cos = ((1.0 - mu * mu) * (1.0 - down * down)).sqrt() * turn.cos() - mu * down;
+            let phase = (1.0 - g * g) / (4.0 * core::f64::consts::PI * (1.0 + g * g - 2.0 * g * cos).powf(1.5));
+            sum += phase * (1.0 - fresnel(in_air, n)) * met;
+        }
+    }
+    sum * (1.0 - edge) / RINGS as f64 * core::f64::consts::TAU / SPOKES as f64
+}

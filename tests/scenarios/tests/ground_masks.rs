@@ -22,6 +22,8 @@ fn the_wet_mask_keeps_what_the_ground_took_under_a_roof_that_has_just_come() {
             }
             world::ground(world);
         });
+        // The ground is handed over at the end of a step and built by the ticks after it.
+        session.advance(1.0).expect("the renderer goes on");
         let under = |p: bevy::math::DVec3| p.y.abs() < 0.02 && p.x.abs().max(p.z.abs()) < 4.5;
         let before = plan.shot(&mut session, 0).where_surface(under);
         world::roof(session.app().world_mut());
@@ -56,8 +58,8 @@ fn the_water_mask_shows_a_level_pool_in_the_hollow_and_nothing_on_the_crown() {
         return;
     }
     let (files, layout) = assets::street_folder();
-    let place = layout.view("puddle").expect("a place at a puddle");
-    let view = View::new(place.eye.map(f64::from), place.target.map(f64::from)).fov(70.0);
+    // From above, between a hollow and the crown of the road.
+    let view = View::new([1.3, 4.2, -4.0], [1.3, 0.0, -4.0]);
     let mut plan = Plan::new(steady(50.0, [0.0; 3]), 1200.0, &[view]);
     plan.scenario.scene = vec![ScenePart::from_file(street::STREET_FILE)];
     let mut session = plan.session(files, |_| {});
@@ -71,7 +73,7 @@ fn the_water_mask_shows_a_level_pool_in_the_hollow_and_nothing_on_the_crown() {
         .find(|h| h.centre == [2.3, -4.0])
         .expect("the hollow before the camera");
     let pool = shot.where_surface(|p| from(p, hollow) < 0.4);
-    assert!(pool.len() > 200, "{} pixels in the hollow", pool.len());
+    assert!(pool.len() > 120, "{} pixels in the hollow", pool.len());
     let depths = pool.iter().map(|p| p.water);
     let (shallow, deep) = depths.fold((f64::MAX, 0.0_f64), |(l, h), d| (l.min(d), h.max(d)));
     assert!(shallow > 0.005 && deep < 0.06, "{shallow} to {deep} m in the hollow");

@@ -54,7 +54,7 @@ pub use disturb::Pressed;
 pub use error::GroundError;
 pub use layers::{GroundLayers, LeftOutGround};
 pub use ledger::GroundLedger;
-pub use query::{DRY_LEVEL, GroundLayer, WaterAt};
+pub use query::{DRY_LEVEL, GroundLayer, PoolRoom, WaterAt};
 pub use run::Ground;
 pub use scene::{GroundDomain, GroundScene, GroundSettings};
 pub use state::{GROUND_STATE_VERSION, GroundState};

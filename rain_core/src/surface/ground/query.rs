@@ -7,7 +7,7 @@ use super::run::Ground;
 use crate::error::clamped;
 use crate::surface::basins::{BasinRun, Basins};
 use crate::surface::height_field::GridFrame;
-use crate::weather::{SurfaceClass, SurfaceProperties};
+use crate::weather::{ColumnF32, SurfaceClass, SurfaceProperties};
 
 /// Level where no pool is near, in [`Ground::levels`]. Units: m.
 pub const DRY_LEVEL: f32 = -1e9;
@@ -41,6 +41,15 @@ pub struct WaterAt {
     pub saturation: f64,
     /// Depth of the pool over the ground of the cell. Units: m.
     pub puddle_m: f64,
+}
+
+/// The hollow that a place lies in, filled to the brim.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoolRoom {
+    /// Height of its lowest cell. Units: m.
+    pub bottom_m: f64,
+    /// Level at which it overflows, for the last time if it does so more than once. Units: m.
+    pub spill_m: f64,
 }
 
 impl Ground {
@@ -146,6 +155,22 @@ impl Ground {
         near.then(|| f32::from(self.exposure[cell]) / 255.0)
     }
 
+    /// The hollow that would flood a place on the ground; none on slopes and roofs, beside the map, and where water
+    /// cannot leave.
+    #[must_use]
+    pub fn pool_room_at(&self, place: DVec3) -> Option<PoolRoom> {
+        let cell = self.cell_at(place.x, place.z)?;
+        let basins = self.basins.basins();
+        let basin = basins.basins()[basins.top(basins.wettable_leaf_at(cell)?) as usize];
+        let spill_m = basin.spill_m?;
+        // A hole is never near.
+        let on_ground = (place.y - self.heights[cell]).abs() <= REACH_M;
+        (on_ground && place.y < spill_m).then_some(PoolRoom {
+            bottom_m: basin.bottom_m,
+            spill_m,
+        })
+    }
+
     fn saturation(&self, class: SurfaceClass, pores_mm: f64) -> f64 {
         (pores_mm / self.properties[class.index()].pore_capacity_mm).clamp(0.0, 1.0)
     }
@@ -178,6 +203,18 @@ impl Ground {
     #[must_use]
     pub fn level_version(&self) -> u64 {
         self.level_version
+    }
+
+    /// Water on a cell's ground, for grids in single precision; dry beyond the last cell.
+    /// Error: 6e-8 relative, by rounding.
+    #[must_use]
+    pub fn cell_water(&self, cell: usize) -> ColumnF32 {
+        let of = |values: &[f64]| values.get(cell).map_or(0.0, |&v| v as f32);
+        ColumnF32 {
+            pores_mm: of(&self.cells.pores),
+            film_mm: of(&self.cells.film),
+            soil_s: of(&self.cells.tau),
+        }
     }
 
     /// Film of each cell's ground, row by row: as many as `out` holds. Units: mm.

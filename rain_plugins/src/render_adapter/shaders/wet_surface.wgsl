@@ -12,7 +12,8 @@
     SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
     rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
     rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_noise_puddle, rain_normal_aslant, rain_udn,
-    rain_remembered, rain_memory_share, rain_puddle_rim,
+    rain_film_texel, rain_memory_of, rain_memory_share, rain_puddle_rim, rain_water_map,
+    ArtistLook, rain_artist_surface, rain_lagarde_porosity, rain_fixed_state,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -39,6 +40,9 @@ struct Wetting {
     noise: vec4<f32>,
     // x: present, y: height map, z: width of the drenched ground, w: share of the noise.
     noise_flags: vec4<f32>,
+    // x: look (0 physical, else a source's rules), y: fixed state (0 none, 1 dry .. 4 puddle), z: 1 for level faces
+    // alone, w unused.
+    look: vec4<f32>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(100) var<uniform> wetting: Wetting;
@@ -51,6 +55,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(107) var rain_reflection_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var rain_painted: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(109) var rain_film_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(110) var rain_near_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(114) var rain_wave_normals: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(115) var rain_more_wave_normals: texture_2d<f32>;
 
@@ -60,6 +65,8 @@ const WATER_ROUGHNESS: f32 = 0.045;
 const FILM_ROUGHNESS: f32 = 0.16;
 // Reflectance of water: F0 = 0.02 = 0.16 r².
 const WATER_REFLECTANCE: f32 = 0.357;
+// Depth of a puddle that a material or component asks for, m.
+const FIXED_PUDDLE_M: f32 = 0.008;
 
 // Slopes of the water's surface, and the variance of those too small to be seen singly.
 struct WaterSurface {
@@ -103,6 +110,16 @@ fn wave_normals(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>) -> vec2<f32> {
     let first = textureSampleGrad(rain_wave_normals, rain_sampler, p.xz * a.x + a.yz, ddx * a.x, ddy * a.x);
     let second = textureSampleGrad(rain_more_wave_normals, rain_sampler, p.xz * b.x + b.yz, ddx * b.x, ddy * b.x);
     return 0.5 * (rain_normal_aslant(first.xy) + rain_normal_aslant(second.xy));
+}
+
+// What the ground at `p` remembers; near the view the finer map knows more.
+fn remembered(p: vec3<f32>) -> vec3<f32> {
+    let levels = rain_surface.levels;
+    let far = rain_film_texel(rain_film_map, rain_sampler, levels, p);
+    if (far.w <= 0.0) {
+        return vec3<f32>(0.0);
+    }
+    return rain_memory_of(levels, p, rain_water_map(rain_near_map, rain_sampler, rain_surface.map, p.xz, far));
 }
 
 // What artists placed at a point.
@@ -205,6 +222,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 #endif
     let placed = placed_water(paint, height, p.xz);
     depth = max(depth, placed.depth);
+    let is_fixed = wetting.look.y > 0.5;
+    let fixed = rain_fixed_state(u32(wetting.look.y));
+    depth = select(depth, level * FIXED_PUDDLE_M * fixed.z, is_fixed);
     let ddx = dpdx(p.xz);
     let ddy = dpdy(p.xz);
 #ifdef VERTEX_UVS_A
@@ -212,10 +232,12 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     input.uv += pixels.x * dpdx(in.uv) + pixels.y * dpdy(in.uv);
 #endif
     var pbr = pbr_input_from_standard_material(input, is_front);
+    let own = pbr.material;
+    let grain = pbr.N;
 
     let normal = normalize(pbr.world_normal);
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
-    let ground = rain_remembered(rain_film_map, rain_sampler, rain_surface.levels, p);
+    let ground = remembered(p);
     let memory = rain_memory_share(ground.z, normal.y);
     // What the ground remembers, a thing's own wetness and walls in the lee need no look at what covers now; rings do.
     var exposure = wetting.take.x * placed.wettable * rain_catch(normal.y, dot(normal, to_rain));
@@ -223,7 +245,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         exposure *= rain_exposure(rain_cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal));
     }
     let shore = rain_puddle_rim(depth);
-    let puddle = level * wetting.take.x * max(select(shore, 0.0, depth <= placed.depth), placed.water);
+    var puddle = level * wetting.take.x * max(select(shore, 0.0, depth <= placed.depth), placed.water);
     // Wetness of the pores and share under a film.
     var wet = vec2<f32>(rain_point_wetness(rain_surface.state, exposure), rain_point_film(rain_surface.state, exposure));
     wet = mix(wet, ground.xy * wetting.take.x * placed.wettable, memory);
@@ -234,6 +256,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     wet.x = select(wet.x, wetting.take.w * wetting.take.x, wetting.take.w >= 0.0);
     // Drenched ground is soaked, too.
     wet = max(wet, vec2<f32>(placed.film * level * wetting.take.x));
+    wet *= mix(1.0, smoothstep(0.5, 0.8, normal.y), wetting.look.z);
+    wet = select(wet, fixed.xy, is_fixed);
+    puddle = select(puddle, level * fixed.z, is_fixed);
     let wetness = max(wet.x, smoothstep(0.0, 0.5, puddle));
     // Water runs off what is steep.
     let film = max(wet.y * smoothstep(0.2, 0.8, normal.y), puddle);
@@ -260,6 +285,18 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     pbr.material.perceptual_roughness = clamp(mix(rough, pow(mirror, 0.25), puddle), 0.03, 1.0);
     pbr.material.metallic *= 1.0 - puddle;
     pbr.material.reflectance = mix(pbr.material.reflectance, vec3<f32>(WATER_REFLECTANCE), film);
+    if (wetting.look.x > 0.5) {
+        // A source's own rules: wet ground keeps its grain, water is flat.
+        let look = ArtistLook(dry, 1.0 - own.perceptual_roughness, 0.16 * own.reflectance * own.reflectance);
+        let by_gloss = rain_lagarde_porosity(look.gloss, own.metallic);
+        let porous = select(by_gloss, wetting.take.y, wetting.take.y >= 0.0);
+        let by_rules = rain_artist_surface(u32(wetting.look.x), look, porous, own.metallic, wet.x, puddle);
+        pbr.material.base_color = vec4<f32>(by_rules.albedo, own.base_color.a);
+        let polished = max(1.0 - by_rules.gloss, puddle * pow(mirror, 0.25));
+        pbr.material.perceptual_roughness = clamp(polished, WATER_ROUGHNESS, 1.0);
+        pbr.material.reflectance = sqrt(by_rules.normal_reflectance / 0.16);
+        pbr.N = normalize(mix(grain, surface, puddle));
+    }
     // Both ends of Fresnel's curve go with the square of this.
     let shine = mix(1.0, rain_surface.water.more_map.w, puddle);
     pbr.material.reflectance *= sqrt(shine);

@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 use rain_core::surface::artist_look::{
-    ArtistLook, accumulated_water, crack_water, drenched_share, effective_wetness, lagarde_porosity,
-    lagarde_porous_wet, lagarde_wet, nguyenova_puddle, nguyenova_puddle_amount, nguyenova_puddle_depth_mm,
-    painted_puddle_water, screen_blend,
+    ArtistLook, ArtistRules, accumulated_water, artist_surface, crack_water, drenched_share, effective_wetness,
+    lagarde_porosity, lagarde_porous_wet, lagarde_wet, nguyenova_puddle, nguyenova_puddle_amount,
+    nguyenova_puddle_depth_mm, painted_puddle_water, screen_blend,
 };
 use rain_core::surface::puddle_map;
 use rain_reference::artist_look as truth;
@@ -344,4 +344,68 @@ fn the_sources_looks_have_their_check_values() {
     let soaked = lagarde_porous_wet(rough, 1.0, 1.0);
     assert!((soaked.albedo - 0.1).abs() < 1e-15 && (soaked.gloss - (1.0 - 0.8 * 0.6)).abs() < 1e-15);
     assert_eq!(lagarde_porous_wet(rough, 0.0, 1.0), rough, "what is not porous stays");
+}
+
+#[test]
+fn a_whole_surface_is_the_listings_one_after_the_other() {
+    let (mut worst, mut wrong) = (Worst::default(), Worst::default());
+    for albedo in [0.05, 0.35, 0.8] {
+        for gloss in shares() {
+            for metal in [0.0, 0.3, 1.0] {
+                let look = ArtistLook {
+                    albedo,
+                    gloss,
+                    f0: 0.04,
+                };
+                let porosity = lagarde_porosity(gloss, metal);
+                for w in shares() {
+                    for a in [0.0, 0.25, 0.7, 1.0] {
+                        let wetness = truth::wetness(w, 1.0, a);
+                        for rules in [ArtistRules::Lagarde, ArtistRules::LagardePorous, ArtistRules::Nguyenova] {
+                            let [wet, g, f] = match rules {
+                                ArtistRules::Lagarde => truth::flooded(truth::wet(parts(look), wetness), a),
+                                ArtistRules::LagardePorous => {
+                                    truth::flooded(truth::porous_wet(parts(look), porosity, wetness), a)
+                                }
+                                ArtistRules::Nguyenova => truth::puddle(truth::wet(parts(look), w), a),
+                            };
+                            let exact = [metal * albedo + (1.0 - metal) * wet, g, f];
+                            let found = |w: f64| parts(artist_surface(rules, look, porosity, metal, w, a));
+                            for (found, exact) in found(w).into_iter().zip(exact) {
+                                worst.absolute(found, exact, || format!("{rules:?} {look:?} {metal} {w} {a}"));
+                            }
+                            wrong.absolute(found(w - 0.05)[0], exact[0], String::new);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    worst.assert_below(9e-16, 50_000);
+    assert!(wrong.error > 0.02, "a wetness 5 % off goes unseen");
+}
+
+#[test]
+fn the_four_types_of_ground_are_the_ends_of_wetness_and_water() {
+    let ground = ArtistLook {
+        albedo: 0.3,
+        gloss: 0.1,
+        f0: 0.04,
+    };
+    let by = |w: f64, a: f64| artist_surface(ArtistRules::Lagarde, ground, 0.0, 0.0, w, a);
+    let [dry, wet, drenched, puddle] = [by(0.0, 0.0), by(1.0, 0.0), by(1.0, 0.5), by(1.0, 1.0)];
+    assert_eq!(dry, ground);
+    assert!((wet.albedo - 0.09).abs() < 1e-15 && (wet.gloss - 0.25).abs() < 1e-15 && wet.f0 == 0.04);
+    assert!((puddle.albedo - 0.09).abs() < 1e-15 && puddle.gloss == 1.0 && puddle.f0 == 0.02);
+    assert!((drenched.gloss - 0.625).abs() < 1e-15 && (drenched.f0 - 0.03).abs() < 1e-15);
+    // A pool on ground that no rain wets is as wet as any (E9); metal keeps its colour.
+    assert_eq!(by(0.0, 1.0), puddle);
+    assert_eq!(
+        artist_surface(ArtistRules::Nguyenova, ground, 0.0, 1.0, 1.0, 1.0).albedo,
+        0.3
+    );
+    for bad in ANY {
+        let found = parts(artist_surface(ArtistRules::LagardePorous, ground, bad, bad, bad, bad));
+        assert!(found.iter().all(|v| (0.0..=1.0).contains(v)), "{bad}: {found:?}");
+    }
 }

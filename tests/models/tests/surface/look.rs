@@ -6,8 +6,8 @@ use rain_core::surface::artist_look::{
     nguyenova_puddle, nguyenova_puddle_amount, nguyenova_puddle_depth_mm, painted_puddle_water, screen_blend,
 };
 use rain_core::surface::{
-    SurfaceState, SurfaceWeights, WATER_F0, Water, WetBody, film_roughness, film_roughness_f32, saturated_albedo,
-    saturated_albedo_f32, under_water, wet_albedo, wet_albedo_f32, wet_albedo_rgb, widened_roughness,
+    SurfaceState, SurfaceWeights, WATER_F0, Water, WetBody, film_roughness, film_roughness_f32, mud_phase,
+    saturated_albedo, saturated_albedo_f32, under_water, wet_albedo, wet_albedo_f32, wet_albedo_rgb, widened_roughness,
 };
 use rain_reference::surface as truth;
 
@@ -206,6 +206,45 @@ fn albedos_are_the_formula_in_every_light_and_at_every_saturation() {
     damp.assert_below(2e-15, 10_000);
     single.assert_below(3e-7, 10_000);
     assert!(wrong.error > 0.01, "an albedo 5 % off goes unseen");
+}
+
+#[test]
+fn mud_shines_as_light_scattered_once_under_an_even_sky() {
+    // Cosines in the air, evenly; those of the rays under water.
+    let refracted = |c: f64| (1.0 - (1.0 - c * c) / (1.333 * 1.333)).sqrt();
+    let cosines: Vec<f64> = (0..50).map(|i| (f64::from(i) + 0.5) / 50.0).collect();
+    let mean = |of: &dyn Fn(f64) -> f64| cosines.iter().map(|c| 2.0 * c * of(refracted(*c))).sum::<f64>() / 50.0;
+    let thick = mean(&|mu| truth::scattered_once(mu, 0.924, 1.333, 1e3));
+    assert!((mean(&mud_phase) - 1.0).abs() < 3e-4, "{}", mean(&mud_phase));
+    let (mut worst, mut wrong) = (Worst::default(), Worst::default());
+    for c in [0.0, 0.2, 0.5, 0.8, 1.0] {
+        let mu = refracted(c);
+        for optical in [0.01, 0.1, 0.3, 1.0, 3.0, 1e3] {
+            let reference = truth::scattered_once(mu, 0.924, 1.333, optical) / thick;
+            let found = |optical: f64| mud_phase(mu) * (1.0 - (-optical * (1.0 / mu + 1.19)).exp());
+            worst.absolute(found(optical), reference, || format!("{c} {optical}"));
+            wrong.absolute(found(1.2 * optical), reference, String::new);
+            // The whole of it, over black ground.
+            let water = Water {
+                absorption_per_m: [0.0; 3],
+                turbidity_per_m: 50.0,
+                mud_albedo: [0.2; 3],
+            };
+            let whole = under_water([0.0; 3], &water, optical / 50.0, c)[1];
+            let entry = 1.0 - truth::fresnel(c, 1.333);
+            assert!(
+                (whole - 0.2 * entry * found(optical)).abs() < 1e-6,
+                "{c} {optical}: {whole}"
+            );
+        }
+    }
+    worst.assert_below(0.045, 30);
+    assert!(wrong.error > 0.06, "a depth 20 % off goes unseen");
+    // Brighter at a grazing angle than from above; bad input stays in bounds.
+    assert!(mud_phase(0.6613) > 1.25 && mud_phase(1.0) < 0.82);
+    for bad in ANY {
+        assert!(mud_phase(bad).is_finite() && mud_phase(bad) > 0.0, "{bad}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod artist;
 mod flow;
 mod ground;
 mod look;
+mod paint;
 mod puddle;
 mod soil;
 
