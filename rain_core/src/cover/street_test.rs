@@ -238,7 +238,7 @@ fn misclassified_shares_are_those_published() {
             }
         }
         slowest_wet.push(format!("{case}: {slowest:.2?}"));
-        let (own, one) = if cell < 0.1 { (1.5, 1.9) } else { (2.1, 2.3) };
+        let (own, one) = if cell < 0.1 { (0.015, 0.019) } else { (0.021, 0.023) };
         assert!(
             all(m.look_up) < own && all(m.one_bound) < one,
             "{case}: {:?}",

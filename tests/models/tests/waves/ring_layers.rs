@@ -44,7 +44,8 @@ fn a_ring_has_the_sources_profile() {
     assert!(wrong.abs() > 1e-2, "{wrong}");
     // The front runs a radius in a cycle, and the ring is a third of a radius wide.
     for phase in [0.4_f32, 0.6, 0.8] {
-        let lit = |distance: f32| ring_profile_f32(1.0 - distance, phase, 1.0) != 0.0;
+        // Beside the wave the sine of 3π is left, which is no number in single precision: 9e-8.
+        let lit = |distance: f32| ring_profile_f32(1.0 - distance, phase, 1.0).abs() > 1e-6;
         assert!(!lit(phase + 0.001) && lit(phase - 0.01) && lit(phase - 0.32) && !lit(phase - 0.335));
     }
 }
@@ -299,7 +300,7 @@ fn drawn_and_hidden_rings_are_as_rough_as_the_rain_makes_the_water() {
         for intensity in [0.1, 0.4, 1.0] {
             let ratio = rings.drawn_slope_variance(intensity, 1.0) / mean_square(&rings, intensity);
             eprintln!("{growth:?}, {intensity}: {ratio:.3} of the mean square");
-            assert!((ratio - 1.0).abs() < 0.15, "{growth:?}, {intensity}: {ratio}");
+            assert!((ratio - 1.0).abs() < 0.05, "{growth:?}, {intensity}: {ratio}");
         }
     }
     let rings = layers(&RingLayerSettings::default());
