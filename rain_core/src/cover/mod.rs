@@ -23,8 +23,8 @@
 //! | mixed roofs at 2.5–8 m and buildings, 0.25 m | 0.6/0.3 · 0.7/0.5 · 1.0/0.4 · 1.3/0.8 | 0.6/0.3 · 0.7/0.5 · 1.0/0.4 · 1.4/0.9 | 0.6/0.3 · 3.3/2.9 · 5.0/4.5 · 6.8/5.8 |
 //!
 //! [`CoverScene`] bounds the occluders' height along each drop's own way; one bound for the whole map is what a shader
-//! without a pyramid of maxima has. The slowest singles (0.5 mm) are worst: in 20 m/s 3–7 % of the points let them
-//! through under a roof, 8–23 % with one bound. An edge is known to half a cell; what is narrower than a cell in the
+//! without a pyramid of maxima has. The slowest singles (0.5 mm) are worst: in 20 m/s 2–8 % of the points let them
+//! through under a roof, 7–10 % with one bound. An edge is known to half a cell; what is narrower than a cell in the
 //! projected plane may be missed.
 
 pub mod air;

@@ -465,7 +465,7 @@ fn exposure_follows_the_cover_map() {
         );
         between += u32::from(share > 0.0 && share < 1.0);
     }
-    assert!(between > 50, "{between} cells lie on the border");
+    assert!(between > 20, "{between} cells lie on the border");
     let at = |x: f64| ground.exposure()[12 * 96 + (x / 0.25) as usize];
     // The rain slants along +x by 0.68 m/m: the shadow lies 2.6 m down the wind.
     assert_eq!((at(19.0), at(21.5), at(23.6)), (255, 0, 0));
