@@ -194,3 +194,14 @@ fn walls_and_the_rule_together_misjudge_fewer_drops_than_the_rule_alone() {
     }
     assert!(by_class[3][0][1] < 0.5 * by_class[1][0][1], "{report}");
 }
+
+#[test]
+fn behind_the_arcades_second_pillar_the_rule_keeps_out_small_drops_that_walls_let_in() {
+    let all = triangles();
+    let block = [[7.0, 0.5, 1.2], [7.3, 2.3, 1.8]];
+    let shares = shares(&all, block, 300, [0.8, 1.6], |_| false);
+    let smallest = shares.map(|way| way[0]);
+    println!("{smallest:.3?}");
+    let [_, rule, walls, both] = smallest.map(|[_, wet]| wet);
+    assert!(both <= rule && both + 0.05 < walls, "{smallest:?}");
+}
