@@ -177,8 +177,8 @@ fn walls_and_the_rule_together_misjudge_fewer_drops_than_the_rule_alone() {
     }
     // The published shares: everything is seeded, only their rounding is left. Units: %.
     for (found, published) in total.iter().zip(PUBLISHED) {
-        for side in 0..2 {
-            assert!((100.0 * found[side] - published[side]).abs() < 0.06, "{report}");
+        for (found, published) in found.iter().zip(published) {
+            assert!((100.0 * found - published).abs() < 0.06, "{report}");
         }
     }
     // Walls let fewer drops of every class in, hardly any class is kept out for it, and nowhere is more misjudged.
@@ -201,7 +201,6 @@ fn behind_the_arcades_second_pillar_the_rule_keeps_out_small_drops_that_walls_le
     let block = [[7.0, 0.5, 1.2], [7.3, 2.3, 1.8]];
     let shares = shares(&all, block, 300, [0.8, 1.6], |_| false);
     let smallest = shares.map(|way| way[0]);
-    println!("{smallest:.3?}");
     let [_, rule, walls, both] = smallest.map(|[_, wet]| wet);
     assert!(both <= rule && both + 0.05 < walls, "{smallest:?}");
 }
