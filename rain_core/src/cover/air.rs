@@ -23,6 +23,9 @@ const BLOCK: i32 = 16;
 /// for in each block that a flood meets.
 const WIDE_BLOCKS: i64 = 4096;
 
+/// Coordinates are taken up to here. Units: m.
+const MAX_COORDINATE_M: f64 = 1e8;
+
 /// Largest number of cells flooded; beyond it the air counts as open.
 const MAX_CELLS: usize = 400_000;
 
@@ -56,7 +59,10 @@ impl AirGrid {
         self.remove(owner);
         let triangles: Vec<_> = triangles
             .into_iter()
-            .filter(|t| t.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e8))
+            .filter(|t| {
+                t.iter()
+                    .all(|p| p.is_finite() && p.abs().max_element() < MAX_COORDINATE_M)
+            })
             .collect();
         for (i, triangle) in triangles.iter().enumerate() {
             let Some(blocks) = blocks_of(triangle) else {
@@ -93,12 +99,15 @@ impl AirGrid {
     /// Floods the free air around `eye` (world metres) up to `range_m`.
     ///
     /// `reached` says whether rain reaches a point. An eye inside a surface's own cell starts from the free cells next
-    /// to it; with none, the air counts as open.
+    /// to it; with none, the air counts as open, as it does for an eye 1e8 m or further away, or nowhere.
     ///
     /// Allocates when it is larger than all before, where it meets blocks of the lattice for the first time since a
     /// surface in them changed, and the cells of closed-in air: keep these, and ask again only when the eye leaves them
     /// or a surface changes.
     pub fn flood(&mut self, eye: DVec3, range_m: f64, mut reached: impl FnMut(DVec3) -> bool) -> Air {
+        if !eye.is_finite() || eye.abs().max_element() >= MAX_COORDINATE_M {
+            return Air::Open;
+        }
         let start = cell_of(eye);
         self.found.clear();
         self.seen.clear();
@@ -185,7 +194,9 @@ impl AirGrid {
     }
 }
 
-/// The lattice cell that holds a point.
+/// The lattice cell that holds a point; a coordinate that is not a number counts as 0.
+///
+/// Error: exact.
 #[must_use]
 pub fn cell_of(p: DVec3) -> IVec3 {
     (p / AIR_CELL_M).floor().as_ivec3()

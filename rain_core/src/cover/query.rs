@@ -153,6 +153,9 @@ impl CoverScene {
     /// Whether drops of fall speed u = 1/`inverse_speed_s_per_m` are stopped before they reach a point in the air.
     /// Outside the map: open sky. For a point on a surface ask [`Self::exposure`].
     ///
+    /// Error: misclassified are up to 5 % of the points in the air of a scene, and 5 % more for each metre of cell, all
+    /// classes counted alike, in wind to 20 m/s. None in the open and none half a metre away from the edges of one roof.
+    ///
     /// # Errors
     /// When the point is not finite or outside the map's domain, or the inverse speed is outside [0.01, 10] s/m.
     pub fn covered(&self, point: DVec3, inverse_speed_s_per_m: f64) -> Result<bool, CoverError> {
@@ -163,6 +166,8 @@ impl CoverScene {
     /// Share of the drops of one class that reach a point on a surface: 1 = open sky, 0 = covered, with a border one to
     /// two cells wide. What stands less than 1.6 cells over the point, measured along the drop's way, does not count:
     /// the surface itself.
+    ///
+    /// Error: 1 % on average about a roof, all of it along the rim.
     ///
     /// # Errors
     /// As in [`Self::covered`].

@@ -90,17 +90,28 @@ impl Wrong {
 }
 
 struct Measured {
-    three_starts: Wrong,
-    /// Three starts under one height bound for the whole map, as on a GPU without a pyramid of maxima.
+    look_up: Wrong,
+    /// Under one height bound for the whole map, as on a GPU without a pyramid of maxima.
     one_bound: Wrong,
+    /// The same without walls.
+    no_walls: Wrong,
     /// Negative controls: no allowance for the class, and a single shift by the own texel's height.
     mean_direction: Wrong,
     one_shift: Wrong,
+    /// Of the slowest class alone: the look-up, and under one bound.
+    slowest: [Wrong; 2],
 }
 
 fn measure(wind: f64, mixed: bool, cell_m: f64) -> Measured {
-    let [mut three_starts, mut one_bound, mut mean_direction, mut one_shift] = [Wrong::default(); 4];
+    let [
+        mut look_up,
+        mut one_bound,
+        mut no_walls,
+        mut mean_direction,
+        mut one_shift,
+    ] = [Wrong::default(); 5];
     let (mut covered, mut weights) = (0.0, 0.0);
+    let (mut slowest, mut asked) = ([Wrong::default(); 2], 0.0);
     let shares = shares();
     for n in 0..12 {
         let street = street(n, mixed);
@@ -137,10 +148,18 @@ fn measure(wind: f64, mixed: bool, cell_m: f64) -> Measured {
                 let back = DVec3::new(-wind_m_s.x / u, 1.0, -wind_m_s.y / u);
                 let truth = street.triangles.iter().any(|t| hits(p, back, t));
                 let shift = (wind_m_s / u - scene.drawn_drift()).as_vec2();
-                three_starts.count(*share, truth, scene.covered(p, 1.0 / u).unwrap());
+                look_up.count(*share, truth, scene.covered(p, 1.0 / u).unwrap());
                 one_bound.count(*share, truth, lookup::covered(q, y, shift, 8.0, height));
+                let starts = [y, 8.0, 0.5 * (y + 8.0)];
+                let any = starts.iter().any(|s| lookup::covered_from(*s, q, y, shift, height));
+                no_walls.count(*share, truth, any);
                 mean_direction.count(*share, truth, height(q) > y);
                 one_shift.count(*share, truth, lookup::covered_from(y, q, y, shift, height));
+                if u == SPEEDS[0] {
+                    slowest[0].count(1.0, truth, scene.covered(p, 1.0 / u).unwrap());
+                    slowest[1].count(1.0, truth, lookup::covered(q, y, shift, 8.0, height));
+                    asked += 1.0;
+                }
                 covered += share * f64::from(u8::from(truth));
                 weights += share;
             }
@@ -152,64 +171,82 @@ fn measure(wind: f64, mixed: bool, cell_m: f64) -> Measured {
         wet: w.wet / weights,
     };
     Measured {
-        three_starts: percent(three_starts),
+        look_up: percent(look_up),
         one_bound: percent(one_bound),
+        no_walls: percent(no_walls),
         mean_direction: percent(mean_direction),
         one_shift: percent(one_shift),
+        slowest: slowest.map(|w| Wrong {
+            dry: w.dry / asked,
+            wet: w.wet / asked,
+        }),
     }
 }
 
-/// (mixed, cell m, wind m/s) and the shares that the module's documentation publishes, % dry / wet: three starts, three
-/// starts under one bound, mean direction only.
+/// (mixed, cell m, wind m/s) and the shares that the module's documentation publishes, % dry / wet: the look-up, the
+/// look-up under one bound, mean direction only.
 const PUBLISHED: [(bool, f64, f64, [[f64; 2]; 3]); 16] = [
     (false, 0.0625, 0.0, [[0.16, 0.07], [0.16, 0.07], [0.16, 0.07]]),
-    (false, 0.0625, 5.0, [[0.14, 0.16], [0.21, 0.17], [2.40, 2.39]]),
-    (false, 0.0625, 10.0, [[0.15, 0.22], [0.32, 0.27], [4.27, 4.35]]),
-    (false, 0.0625, 20.0, [[0.21, 0.30], [0.50, 0.50], [7.43, 7.12]]),
+    (false, 0.0625, 5.0, [[0.15, 0.12], [0.21, 0.13], [2.40, 2.39]]),
+    (false, 0.0625, 10.0, [[0.16, 0.13], [0.32, 0.19], [4.27, 4.35]]),
+    (false, 0.0625, 20.0, [[0.22, 0.17], [0.50, 0.36], [7.43, 7.12]]),
     (false, 0.25, 0.0, [[0.53, 0.38], [0.53, 0.38], [0.53, 0.38]]),
-    (false, 0.25, 5.0, [[0.49, 0.46], [0.51, 0.48], [2.46, 2.44]]),
-    (false, 0.25, 10.0, [[0.52, 0.51], [0.60, 0.55], [4.33, 4.41]]),
-    (false, 0.25, 20.0, [[0.52, 0.51], [0.78, 0.68], [7.50, 7.07]]),
+    (false, 0.25, 5.0, [[0.49, 0.46], [0.52, 0.48], [2.46, 2.44]]),
+    (false, 0.25, 10.0, [[0.53, 0.47], [0.61, 0.52], [4.33, 4.41]]),
+    (false, 0.25, 20.0, [[0.54, 0.40], [0.80, 0.57], [7.50, 7.07]]),
     (true, 0.0625, 0.0, [[0.19, 0.04], [0.19, 0.04], [0.19, 0.04]]),
-    (true, 0.0625, 5.0, [[0.25, 0.20], [0.26, 0.27], [3.12, 2.80]]),
-    (true, 0.0625, 10.0, [[0.54, 0.30], [0.67, 0.47], [4.85, 4.49]]),
-    (true, 0.0625, 20.0, [[0.95, 0.68], [1.20, 1.36], [6.71, 5.69]]),
+    (true, 0.0625, 5.0, [[0.26, 0.15], [0.26, 0.17], [3.12, 2.80]]),
+    (true, 0.0625, 10.0, [[0.54, 0.19], [0.68, 0.26], [4.85, 4.49]]),
+    (true, 0.0625, 20.0, [[0.97, 0.38], [1.23, 0.61], [6.71, 5.69]]),
     (true, 0.25, 0.0, [[0.63, 0.31], [0.63, 0.31], [0.63, 0.31]]),
-    (true, 0.25, 5.0, [[0.72, 0.53], [0.71, 0.56], [3.31, 2.94]]),
-    (true, 0.25, 10.0, [[0.98, 0.55], [1.00, 0.64], [5.03, 4.48]]),
-    (true, 0.25, 20.0, [[1.22, 1.16], [1.34, 1.61], [6.75, 5.78]]),
+    (true, 0.25, 5.0, [[0.72, 0.48], [0.72, 0.49], [3.31, 2.94]]),
+    (true, 0.25, 10.0, [[1.00, 0.41], [1.02, 0.45], [5.03, 4.48]]),
+    (true, 0.25, 20.0, [[1.25, 0.75], [1.38, 0.91], [6.75, 5.78]]),
 ];
 
 #[test]
 fn misclassified_shares_are_those_published() {
+    let mut off = Vec::new();
     for (mixed, cell, wind, published) in PUBLISHED {
         let m = measure(wind, mixed, cell);
         let case = format!("mixed {mixed}, cell {cell} m, wind {wind} m/s");
         for (name, got, [dry, wet]) in [
-            ("three starts", m.three_starts, published[0]),
+            ("look-up", m.look_up, published[0]),
             ("one bound", m.one_bound, published[1]),
             ("mean direction", m.mean_direction, published[2]),
         ] {
             // Everything is seeded: only the rounding of the published figure is left.
-            assert!(
-                (got.dry - dry).abs() < 0.006 && (got.wet - wet).abs() < 0.006,
-                "{case}, {name}: {got:?}"
-            );
+            if !((got.dry - dry).abs() < 0.006 && (got.wet - wet).abs() < 0.006) {
+                off.push(format!("{case}, {name}: {got:.3?}"));
+            }
         }
         let all = |w: Wrong| w.dry + w.wet;
         if wind > 0.0 {
-            // What the three starts are for: the other ways are several times worse, and a single shift lets it rain
-            // under the eaves.
-            assert!(all(m.mean_direction) > 4.0 * all(m.three_starts), "{case}");
-            assert!(m.one_shift.wet > 4.0 * m.three_starts.wet, "{case}: {:?}", m.one_shift);
-            assert!(all(m.three_starts) < 1.1 * all(m.one_bound), "{case}");
+            // What starts and walls are for: the other ways are worse, and a single shift lets it rain under the eaves.
+            assert!(all(m.mean_direction) > 4.0 * all(m.look_up), "{case}");
+            assert!(m.one_shift.wet > 4.0 * m.look_up.wet, "{case}: {:?}", m.one_shift);
+            assert!(all(m.look_up) < 1.1 * all(m.one_bound), "{case}");
+            // Halving finds a few edges too wide, never as many as the walls that it finds.
+            assert!(all(m.one_bound) < all(m.no_walls) + 0.01, "{case}: {:?}", m.no_walls);
+            assert!(m.one_bound.dry - m.no_walls.dry < 0.05, "{case}: {:?}", m.no_walls);
+        }
+        // The slowest class is the worst.
+        let slowest = m.slowest.map(|w| w.wet);
+        if wind == 20.0 {
+            assert!(slowest[0] < 8.0 && slowest[1] < 11.0, "{case}: {slowest:?}");
         }
         assert!(
-            all(m.three_starts) / 100.0 < if cell < 0.1 { 0.023 } else { 0.03 },
+            all(m.look_up) / 100.0 < if cell < 0.1 { 0.015 } else { 0.021 },
             "{case}: {:?}",
-            m.three_starts
+            m.look_up
+        );
+        assert!(
+            all(m.one_bound) / 100.0 < if cell < 0.1 { 0.019 } else { 0.023 },
+            "{case}: {:?}",
+            m.one_bound
         );
     }
+    assert!(off.is_empty(), "{}", off.join("\n"));
 }
 
 #[test]

@@ -161,6 +161,9 @@ impl Container {
     /// Error: the drops are those of [`for_each_drop`] within reach and view, save within 1e-4 m of their borders;
     /// positions 1e-5 m, presence 1e-4.
     ///
+    /// An eye that is not finite stands at the origin of every class, one whose velocity is not finite stands still; a
+    /// side or an exposure that is not a number sees nothing.
+    ///
     /// Allocates only where it holds more drops than ever before.
     #[must_use = "false says that drops were left out"]
     pub fn fill(
@@ -180,9 +183,12 @@ impl Container {
             focal_px: view.focal_px,
             exposure_s: view.exposure_s,
         };
-        let lead = (view.eye_velocity_m_s * LEAD_TIME_S)
-            .clamp_length_max(LEAD_CAP_M)
-            .as_vec3();
+        let eye_velocity = if view.eye_velocity_m_s.is_finite() {
+            view.eye_velocity_m_s
+        } else {
+            DVec3::ZERO
+        };
+        let lead = (eye_velocity * LEAD_TIME_S).clamp_length_max(LEAD_CAP_M).as_vec3();
         let mut complete = true;
         for (k, class) in SizeClass::all().iter().enumerate() {
             let placement = ClassPlacement {
@@ -191,7 +197,12 @@ impl Container {
             };
             self.classes.push(placement);
             if spectrum.n0_per_m3_mm > 0.0 && kappa > 0.0 {
-                complete &= self.fill_class(seed, k, class, spectrum, &placement, view, &range, lead, max_drops);
+                // A streak reaches back along its path relative to the eye for one exposure.
+                let relative = placement.velocity_m_s - eye_velocity.as_vec3();
+                let streak = relative.length() * view.exposure_s as f32;
+                complete &= self.fill_class(
+                    seed, k, class, spectrum, &placement, view, &range, lead, streak, max_drops,
+                );
             }
         }
         complete
@@ -207,14 +218,12 @@ impl Container {
         view: &RainViewVolume,
         range: &DrawRange,
         lead: Vec3,
+        streak: f32,
         max_drops: usize,
     ) -> bool {
         let threshold = Threshold::new(class, spectrum);
         let cell_m = class.cell_m as f32;
         let reach = (FADE_END * range.at(class.max_mm)) as f32;
-        // A streak reaches back along its path relative to the eye for one exposure.
-        let relative = placement.velocity_m_s - view.eye_velocity_m_s.as_vec3();
-        let streak = relative.length() * view.exposure_s as f32;
         let low = (lead.min(Vec3::ZERO) - reach) / cell_m + placement.eye.fraction;
         let high = (lead.max(Vec3::ZERO) + reach) / cell_m + placement.eye.fraction;
         let bound = IVec3::splat(CELL_BIAS);

@@ -11,8 +11,9 @@
 //! is `depth + P dt − result` where the result is above 0.
 //!
 //! # Accuracy
-//! In single precision the roundings of many short steps add up: at 60 steps a second 1e-4 of the film in a
-//! minute, where the splitting errs by 1e-7. Step grids by 0.25 to 1 s, or keep the film in f64.
+//! In single precision the roundings of many short steps add up: in a minute to 1e-3 of the film at 60 steps a
+//! second, where the splitting errs by 1e-7; to 4e-5 in steps of 0.25 s, 1e-5 in steps of 1 s. Step grids by 0.25 to 1 s,
+//! or keep the film in f64.
 //!
 //! One texel knows nothing of its neighbours: all water that drains leaves it, and ℓ stands for the flow path. With
 //! ℓ the length of a plane the steady depth is that at its foot.
@@ -57,7 +58,8 @@ pub fn film_step(depth_m: f64, rain_m_s: f64, drain: f64, dt_s: f64) -> f64 {
     (wetted / (x * ops::sqrt(x)) + half).max(0.0)
 }
 
-/// [`film_step`] in single precision. Error: 6e-7 against it, relative to the water that took part.
+/// [`film_step`] in single precision. Error: 6e-7 against it, relative to the water that took part; a minute of steps
+/// of 1/60, 1/4, 1 s ends within 1e-3, 4e-5, 1e-5.
 #[must_use]
 pub fn film_step_f32(depth_m: f32, rain_m_s: f32, drain: f32, dt_s: f32) -> f32 {
     step_f32(depth_m, rain_m_s, drain, dt_s, ops::cbrtf)

@@ -206,7 +206,7 @@ pub fn ring_profile_f32(nearness: f32, phase: f32, weight: f32) -> f32 {
 ///
 /// Both in [0, 1]. Source: choice.
 ///
-/// Error: exact up to 1e-6.
+/// Error: absolute 3e-6 against the formula in double precision.
 #[must_use]
 pub fn ring_presence_f32(chance: f32, weight: f32) -> f32 {
     ((weight * (1.0 + RING_FADE) - chance) * (1.0 / RING_FADE)).clamp(0.0, 1.0)
@@ -313,7 +313,7 @@ impl RingLayers {
 
     /// Mean square slope of the rings that are drawn, the sum of both directions, over map and time. Units: none.
     ///
-    /// Error: relative 2e-2 against the mean over maps; layers that overlap are independent of each other.
+    /// Error: relative 5e-2 against the mean over 40 moments of a map; layers that overlap are independent of each other.
     #[must_use]
     pub fn drawn_slope_variance(&self, intensity: f64, gain: f64) -> f64 {
         let steepness = self.settings.steepness * gain;
@@ -329,7 +329,10 @@ impl RingLayers {
         steepness * steepness * ring_layer_weights(intensity).map(layer).iter().sum::<f64>()
     }
 
-    /// What this rain does: nothing without rain. Error: a map's variance, drawn and not, is within 0.12 of the rain's.
+    /// What this rain does: nothing without rain.
+    ///
+    /// Error: as many rings as drops to 1e-9 until all circles are in use; a map with what it hides is as rough as the
+    /// rain makes the water within 0.12.
     #[must_use]
     pub fn forcing(&self, rain: &DropSizes) -> RingForcing {
         let rate_mm_h = rain.rain_rate_mm_h(0.0, LARGEST_MM, terminal_velocity);

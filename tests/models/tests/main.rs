@@ -5,6 +5,8 @@ mod allocation;
 mod basins;
 mod canopy;
 mod check;
+mod container;
+mod cover;
 mod drop;
 mod drop_field;
 mod fall;

@@ -271,6 +271,62 @@ fn cover_look_up_agrees_with_the_cpu_and_with_geometry_and_a_single_shift_does_n
     );
 }
 
+/// A house: low x, low z, high x, high z, height; from the ground up. Its walls face the rain along +x, −z.
+const HOUSE: [f64; 5] = [-3.0, -8.0, 9.0, 2.0, 8.0];
+
+/// Highest point of the house's inside on the way of rain of `inverse_speed` through `p`.
+fn highest_in_house(p: DVec3, drift: DVec2) -> Option<f64> {
+    let (mut low, mut high) = (0.0_f64, HOUSE[4]);
+    for (at, drift, near, far) in [(p.x, drift.x, HOUSE[0], HOUSE[2]), (p.z, drift.y, HOUSE[1], HOUSE[3])] {
+        // At the height y the way is at `at − (y − p.y) drift`.
+        let ends = [near, far].map(|side| p.y + (at - side) / drift);
+        low = low.max(ends[0].min(ends[1]));
+        high = high.min(ends[0].max(ends[1]));
+    }
+    (high >= low).then_some(high)
+}
+
+#[test]
+fn walls_stop_the_same_drops_on_the_gpu_as_on_the_cpu_and_as_geometry() {
+    let Some(gpu) = device() else { return };
+    let p = placement();
+    let texel = p.extent_m / f64::from(TEXELS);
+    let corner = p.centre_m - 0.5 * p.extent_m;
+    let mean = p.inverse_speed_s_m * p.wind_m_s;
+    let heights: Vec<_> = (0..TEXELS * TEXELS)
+        .map(|i| {
+            let q = corner + (DVec2::new(f64::from(i % TEXELS), f64::from(i / TEXELS)) + 0.5) * texel;
+            highest_in_house(DVec3::new(q.x, p.plane_m, q.y), mean)
+        })
+        .collect();
+    let on_gpu = gpu_covered(&gpu, &p, &heights);
+    let height = |q: Vec2| {
+        let cell = (q / texel as f32).floor();
+        if cell.min_element() < 0.0 || cell.max_element() >= TEXELS as f32 {
+            return OPEN_SKY;
+        }
+        heights[cell.y as usize * TEXELS as usize + cell.x as usize].map_or(OPEN_SKY, |h| (h - p.plane_m) as f32)
+    };
+    let [mut cpu, mut starts, mut exact] = [const { Vec::new() }; 3];
+    for (place, inverse) in points() {
+        let shift = shift_per_metre(p.wind_m_s.as_vec2(), inverse as f32, p.inverse_speed_s_m as f32);
+        let y = place.y - p.plane_m;
+        let q = (DVec2::new(place.x, place.z) + y * mean - corner).as_vec2();
+        let (y, top) = (y as f32, (p.highest_m - p.plane_m) as f32);
+        cpu.push(covered(q, y, shift, top, height));
+        let mut from = [y, top, 0.5 * (y + top)].into_iter();
+        starts.push(from.any(|start| covered_from(start, q, y, shift, height)));
+        exact.push(highest_in_house(place, inverse * p.wind_m_s).is_some_and(|high| high > place.y));
+    }
+    let apart = share(&on_gpu, &cpu);
+    assert!(apart < 0.005, "GPU and CPU differ in {apart}");
+    let [off, without] = [share(&on_gpu, &exact), share(&starts, &exact)];
+    assert!(
+        off < 0.01 && without > 2.0 * off,
+        "misclassified {off}, without walls {without}"
+    );
+}
+
 #[test]
 fn an_empty_map_and_no_map_cover_nothing() {
     let Some(gpu) = device() else { return };

@@ -4,9 +4,12 @@
 //! Integrals are plain sums over many points, differential equations are stepped by Dormand–Prince with a tight
 //! tolerance, and closed forms are those of the textbooks.
 
+pub mod air;
 pub mod artist_look;
 pub mod basins;
 pub mod canopy;
+pub mod container;
+pub mod cover;
 pub mod drop;
 pub mod fall;
 pub mod fall_speed;

@@ -4,4 +4,6 @@ mod car;
 mod files;
 mod geometry;
 mod places;
+mod rain;
 mod scene;
+mod walls;

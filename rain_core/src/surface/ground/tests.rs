@@ -450,6 +450,22 @@ fn exposure_follows_the_cover_map() {
     for first in (0..96 * 48).step_by(1000) {
         ground.refresh_exposure(&cover, &classes, first, 1000).expect("valid");
     }
+    // Every cell holds what the cover says, but for the rounding to 255ths.
+    let mut between = 0;
+    for (cell, &held) in ground.exposure().iter().enumerate() {
+        let [x, z] = ground.frame.centre_m(cell % 96, cell / 96);
+        let place = DVec3::new(x, ground.heights[cell], z);
+        if place.y.is_nan() {
+            continue;
+        }
+        let share = f64::from(cover.flux_exposure(place, &classes).expect("finite"));
+        assert!(
+            (f64::from(held) / 255.0 - share).abs() < 1.0 / 510.0 + 1e-7,
+            "{place}: {held} {share}"
+        );
+        between += u32::from(share > 0.0 && share < 1.0);
+    }
+    assert!(between > 20, "{between} cells lie on the border");
     let at = |x: f64| ground.exposure()[12 * 96 + (x / 0.25) as usize];
     // The rain slants along +x by 0.68 m/m: the shadow lies 2.6 m down the wind.
     assert_eq!((at(19.0), at(21.5), at(23.6)), (255, 0, 0));

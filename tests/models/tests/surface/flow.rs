@@ -390,6 +390,32 @@ fn single_precision_film_steps_stay_near_the_double_ones() {
 }
 
 #[test]
+fn roundings_of_many_short_film_steps_add_up_as_stated() {
+    // A minute, by the length of a step: against the same steps in double precision.
+    for (steps, allowed) in [(3600, 1e-3), (240, 4e-5), (60, 1e-5)] {
+        let dt = (60.0 / f64::from(steps)) as f32;
+        let mut worst = Worst::default();
+        for h in [0.0_f32, 1e-5, 1e-4, 1e-3, 1e-2] {
+            for rain in [0.0_f32, 1e-6, 1e-5, 1e-4] {
+                for drain in [0.01_f32, 0.1, 1.0, 10.0] {
+                    let double = (0..steps).fold(f64::from(h), |h, _| {
+                        film_step(h, f64::from(rain), f64::from(drain), f64::from(dt))
+                    });
+                    for step in [film_step_f32, fast_film_step_f32] {
+                        let single = (0..steps).fold(h, |h, _| step(h, rain, drain, dt));
+                        worst.relative(f64::from(single), double, 1e-30, || {
+                            format!("{h} {rain} {drain}, {steps}")
+                        });
+                    }
+                }
+            }
+        }
+        worst.assert_below(allowed, 160);
+        assert!(worst.error > 0.2 * allowed, "{steps} steps: {}", worst.error);
+    }
+}
+
+#[test]
 fn the_film_step_takes_anything() {
     for h in ANY {
         for rain in ANY {

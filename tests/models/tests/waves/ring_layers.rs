@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use rain_core::rainfall::{Distribution, DropSizes, Spectrum, terminal_velocity};
 use rain_core::waves::{
-    CircleSettings, RING_CYCLES, RingForcing, RingGrowth, RingIntensity, RingLayerSettings, RingLayers,
+    CircleSettings, RING_CYCLES, RING_FADE, RingForcing, RingGrowth, RingIntensity, RingLayerSettings, RingLayers,
     rain_slope_variance, ring_clocks, ring_layer_weights, ring_presence_f32, ring_profile_f32, slope_variance,
 };
 use rain_reference::waves as truth;
@@ -44,7 +44,8 @@ fn a_ring_has_the_sources_profile() {
     assert!(wrong.abs() > 1e-2, "{wrong}");
     // The front runs a radius in a cycle, and the ring is a third of a radius wide.
     for phase in [0.4_f32, 0.6, 0.8] {
-        let lit = |distance: f32| ring_profile_f32(1.0 - distance, phase, 1.0) != 0.0;
+        // Beside the wave the sine of 3π is left, which is no number in single precision: 9e-8.
+        let lit = |distance: f32| ring_profile_f32(1.0 - distance, phase, 1.0).abs() > 1e-6;
         assert!(!lit(phase + 0.001) && lit(phase - 0.01) && lit(phase - 0.32) && !lit(phase - 0.335));
     }
 }
@@ -114,6 +115,18 @@ fn intensity_brings_layers_in_by_quarters() {
     assert_eq!((ring_presence_f32(0.999, 1.0), ring_presence_f32(0.0, 0.0)), (1.0, 0.0));
     let edge = ring_presence_f32(0.5, 0.5);
     assert!((edge - 0.5).abs() < 1e-5, "{edge}");
+    let mut worst = Worst::default();
+    for i in 0..=1000_u16 {
+        for j in 0..=100_u16 {
+            let (chance, weight) = (f32::from(i) / 1000.0, f32::from(j) / 100.0);
+            let fade = f64::from(RING_FADE);
+            let exact = ((f64::from(weight) * (1.0 + fade) - f64::from(chance)) / fade).clamp(0.0, 1.0);
+            worst.absolute(f64::from(ring_presence_f32(chance, weight)), exact, || {
+                format!("{chance} {weight}")
+            });
+        }
+    }
+    worst.assert_below(3e-6, 101_101);
     for weight in [0.0_f32, 0.02, 0.1, 0.5, 0.93, 1.0] {
         let count = 20_000_u16;
         let present = |i: u16| f64::from(ring_presence_f32((f32::from(i) + 0.5) / f32::from(count), weight));
@@ -287,7 +300,7 @@ fn drawn_and_hidden_rings_are_as_rough_as_the_rain_makes_the_water() {
         for intensity in [0.1, 0.4, 1.0] {
             let ratio = rings.drawn_slope_variance(intensity, 1.0) / mean_square(&rings, intensity);
             eprintln!("{growth:?}, {intensity}: {ratio:.3} of the mean square");
-            assert!((ratio - 1.0).abs() < 0.15, "{growth:?}, {intensity}: {ratio}");
+            assert!((ratio - 1.0).abs() < 0.05, "{growth:?}, {intensity}: {ratio}");
         }
     }
     let rings = layers(&RingLayerSettings::default());
