@@ -157,13 +157,14 @@ fn a_wheels_track_on_a_wet_road_is_seen_and_fills_again() {
         (before[1] - after[1]).abs() < 2.0,
         "the road beside does not: {before:?}, then {after:?}"
     );
-    // The view looks away and comes back: the track is still there, from the ground's cells.
+    // The view looks away and comes back: the track is still there, fainter and as wide as the ground's cells.
     test.look(Vec3::new(0.0, 16.0, 36.0), Vec3::new(0.0, 0.0, 36.0));
     test.frames(3, FRAME);
     test.look(Vec3::new(0.0, 16.0, 0.0), Vec3::ZERO);
     test.frames(3, FRAME);
     let back = look(&mut test);
-    assert!(before[0] - back[0] > 0.4 * lost, "{before:?}, {after:?}, then {back:?}");
+    let fainter = before[0] - back[0];
+    assert!(fainter > 2.0, "{before:?}, {after:?}, then {back:?}");
     rain(&mut test, weather, 20.0, 60);
     rain(&mut test, weather, 0.0, 1);
     let filled = look(&mut test);
