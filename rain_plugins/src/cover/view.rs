@@ -180,7 +180,7 @@ fn watch_occluders(
         | images.read().any(|e| matches!(e, AssetEvent::LoadedWithDependencies { .. }));
     let gone = removed.read().count() > 0;
     watch.changed |= asset_changed | gone;
-    let Some(eye) = leading_view(&views).map(GlobalTransform::translation) else {
+    let Some(eye) = leading_view(views).map(GlobalTransform::translation) else {
         return;
     };
     let reach = settings.extent_m;
@@ -272,7 +272,7 @@ fn aim_view(
         return;
     };
     camera.is_active = false;
-    let lead = leading_view(&views);
+    let lead = leading_view(views);
     // What the leading view sees is what covers.
     let seen = lead.as_ref().and_then(|l| l.layers);
     if lead.is_some() && layers != seen {

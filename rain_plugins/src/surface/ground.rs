@@ -129,7 +129,7 @@ pub(super) fn follow_ground(
     ground: Option<Res<SurfaceGround>>,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
 ) {
-    let eye = leading_view(&views).map(GlobalTransform::translation);
+    let eye = leading_view(views).map(GlobalTransform::translation);
     let built = ground.as_ref().and_then(|g| Some((g.ground()?, g.rebuilds())));
     let Some((ground, builds)) = built else {
         if shown.shown.take().is_some() {

@@ -75,7 +75,7 @@ pub(super) fn follow_weather(
 ) {
     surface.placed = refined.iter().any(|wetting| wetting.state.is_some());
     surface.shown = !painted.is_empty() || surface.placed || refined.iter().any(SurfaceWetting::is_by_hand);
-    let eye = leading_view(&views).map(GlobalTransform::translation);
+    let eye = leading_view(views).map(GlobalTransform::translation);
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
     let Some(weather) = state else {

@@ -247,6 +247,8 @@ pub(super) fn rain_on_water(
 
 #[cfg(test)]
 mod tests {
+    use std::slice::from_ref;
+
     use super::*;
 
     #[test]
@@ -257,15 +259,15 @@ mod tests {
         let (dry, wet) = (Vec4::ZERO, Vec4::new(1.0, 0.0, 0.2, 1.0));
         let paint = PuddlePaint::default();
         assert!(!water(wet, &[], &[]), "none placed");
-        assert!(!water(dry, &[paint.clone()], &[NoisePuddles::default()]));
-        assert!(water(wet, &[paint.clone()], &[]) && water(wet, &[], &[NoisePuddles::default()]));
+        assert!(!water(dry, from_ref(&paint), &[NoisePuddles::default()]));
+        assert!(water(wet, from_ref(&paint), &[]) && water(wet, &[], &[NoisePuddles::default()]));
         let holes = Vec4::new(1.0, 0.1, 0.0, 1.0);
-        assert!(water(holes, &[paint.clone()], &[]));
+        assert!(water(holes, from_ref(&paint), &[]));
         let plain = PuddlePaint {
             height_map: false,
             ..paint.clone()
         };
-        assert!(!water(holes, &[plain.clone()], &[]));
+        assert!(!water(holes, from_ref(&plain), &[]));
         for paint in [
             PuddlePaint {
                 fixed: true,

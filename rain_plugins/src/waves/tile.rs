@@ -111,7 +111,7 @@ pub(super) fn move_water(
     }
     let room = if waves.off { 0 } else { MAX_DISTURBANCES - found.len() };
     found.extend(splashes.read().map(foot_fall).take(room));
-    let view = leading_view(&views);
+    let view = leading_view(views);
     let reason = match view {
         None => Some(SkipReason::NoView),
         Some(_) if waves.off => Some(SkipReason::Disabled),

@@ -23,7 +23,7 @@ fn lose_device(test: &mut TestApp) {
             .get_resource_change_ticks::<RenderDevice>()
             .map(|t| t.changed)
     };
-    let first = replaced(&test);
+    let first = replaced(test);
     lost.wgpu_device().destroy();
     // The callback that reports the loss fires from a poll.
     let _ = lost.wgpu_device().poll(wgpu::PollType::Poll);
@@ -31,7 +31,7 @@ fn lose_device(test: &mut TestApp) {
     for _ in 0..400 {
         test.app.update();
         std::thread::sleep(Duration::from_millis(5));
-        rebuilt = replaced(&test) != first;
+        rebuilt = replaced(test) != first;
         if rebuilt {
             break;
         }
