@@ -141,7 +141,8 @@ pub fn test() -> Result<(), u8> {
     let mut tests = cargo(&root, "test");
     tests
         .args(WORKSPACE)
-        .args(["--lib", "--bins", "--tests"])
+        // All that fails is told at once: a run takes minutes.
+        .args(["--lib", "--bins", "--tests", "--no-fail-fast"])
         .env("RAIN_GPU", "required");
     let mut doc_tests = cargo(&root, "test");
     // The whole workspace: with `-p` features would differ, and Bevy would be compiled once more.
