@@ -32,7 +32,7 @@ const PHASES: [f64; RING_LAYERS] = [0.0, 0.32, 0.72, 1.12];
 const OFFSETS: [[f64; 2]; RING_LAYERS] = [[0.25, 0.0], [-0.55, 0.3], [0.6, 0.85], [0.5, -0.75]];
 /// Cycles of the first clock, and of each, after which all are as they were.
 const PERIOD: f64 = 100.0;
-/// See [`PERIOD`].
+/// Cycles after which each layer starts anew.
 pub const RING_CYCLES: [u32; RING_LAYERS] = [100, 85, 93, 113];
 /// Share of a layer's circles over which their rings fade in as it grows.
 pub const RING_FADE: f32 = 0.1;
