@@ -468,7 +468,7 @@ impl Default for RainSettings {
 }
 
 /// How standing water looks and moves. Nothing here changes wetness or the water ledger. Units, domains and defaults: those
-/// of [`WaterAppearance`](crate::surface::WaterAppearance) unless stated.
+/// of [`WaterAppearance`] unless stated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WaterSettings {
