@@ -1,4 +1,4 @@
-//! The map that places puddles at random (Nguyenova 2021): noise over the ground, without tiles.
+//! The map that places puddles at random (Nguyenova 2021): noise over the ground. It repeats after 4096 sizes.
 //!
 //! # Accuracy
 //! A look: the source gives no formula for its Perlin noise. Value noise of three octaves is taken, spread so that all of
@@ -7,17 +7,19 @@
 use crate::hash::{pcg3d, unit_f32};
 
 /// Ratios and offsets of the octaves' lattices.
-const OCTAVES: [(f64, f64, f64); 3] = [(1.0, 0.0, 1.0), (2.03, 7.31, 0.5), (4.11, -3.77, 0.25)];
+const OCTAVES: [(f64, f64, f64); 3] = [(1.0, 0.0, 1.0), (2.0, 7.31, 0.5), (4.0, -3.77, 0.25)];
 /// The sum is spread from here to here.
 const SPREAD: [f64; 2] = [0.25, 0.75];
 /// Farther from the origin lattice cells have no number of their own.
 const FARTHEST: f64 = 1e9;
 
+/// The lattice repeats after so many points: a power of two, so that places far from the origin have exact ones.
+const PERIOD: i64 = 4096;
+
 /// Value noise over the lattice of whole numbers, smooth to the second derivative.
 fn value_noise(x: f64, z: f64, seed: u32) -> f64 {
     let corner = |x: f64, z: f64| {
-        // Whole numbers within ±2³¹; as bits, as the shader has them.
-        let cell = [x, z].map(|at| at as i64 as u32);
+        let cell = [x, z].map(|at| (at as i64).rem_euclid(PERIOD) as u32);
         f64::from(unit_f32(pcg3d([cell[0], cell[1], seed])[0]))
     };
     let (x0, z0) = (x.floor(), z.floor());

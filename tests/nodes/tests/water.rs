@@ -85,7 +85,10 @@ fn the_map_of_puddles_is_the_cpus() {
     let input: Vec<[f32; 4]> = (0..4000_u16)
         .map(|i| [f32::from(i) * 0.037 - 70.0, f32::from(i % 61) * 0.19 - 5.0, 0.0, 0.0])
         .collect();
-    let Some(found) = evaluate("vec4<f32>(rain_puddle_noise(v.xy, 7u))", &input) else {
+    let Some(found) = evaluate(
+        "vec4<f32>(rain_puddle_noise(vec2<f32>(0.0), v.xy, vec2<f32>(1.0), 7u))",
+        &input,
+    ) else {
         return;
     };
     let off = |seed: u32| {

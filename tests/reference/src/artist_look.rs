@@ -86,11 +86,11 @@ pub fn drenched(level: f64, blended: f64, width: f64) -> f64 {
     scale * (1.0 - 3.0 * away.powi(2) + 2.0 * away.powi(3))
 }
 
-/// Noise that places puddles: three octaves of values at whole numbers, each blended over its four neighbours by the
+/// Noise that places puddles: three octaves of values at whole numbers, the same after 4096, each blended over its four neighbours by the
 /// weights 1 − s and s, s = 10 f³ − 15 f⁴ + 6 f⁵; then spread from [0.25, 0.75] over [0, 1] by the cubic.
 pub fn puddle_map(x: f64, z: f64, seed: u32) -> f64 {
     let mut sum = 0.0;
-    for (octave, [scale, shift]) in [[1.0, 0.0], [2.03, 7.31], [4.11, -3.77]].into_iter().enumerate() {
+    for (octave, [scale, shift]) in [[1.0, 0.0], [2.0, 7.31], [4.0, -3.77]].into_iter().enumerate() {
         let at = [scale * x + shift, scale * z + shift];
         let [sx, sz] = at.map(|a| {
             let f = a - a.floor();
@@ -99,7 +99,7 @@ pub fn puddle_map(x: f64, z: f64, seed: u32) -> f64 {
         let mut value = 0.0;
         for (i, wx) in [(0, 1.0 - sx), (1, sx)] {
             for (j, wz) in [(0, 1.0 - sz), (1, sz)] {
-                let cell = [at[0].floor() as i64 + i, at[1].floor() as i64 + j].map(|c| c.rem_euclid(1 << 32) as u32);
+                let cell = [at[0].floor() as i64 + i, at[1].floor() as i64 + j].map(|c| c.rem_euclid(4096) as u32);
                 let word = crate::hash::pcg3d([cell[0], cell[1], seed + octave as u32])[0];
                 value += wx * wz * f64::from(word >> 8) / 16_777_216.0;
             }
