@@ -70,9 +70,7 @@ mod tests {
                     (&line.variant, line.default),
                     "{name}"
                 );
-                // Tables of the cover were measured before its look-up halved ways through walls; it errs less now.
-                let allowed = if name.starts_with("cover-") { 0.1 } else { 0.01 };
-                if (variant.error - line.error).abs() > allowed * line.error {
+                if (variant.error - line.error).abs() > 0.01 * line.error {
                     let (now, published) = (variant.error, line.error);
                     off_the_table.push(format!("{name}, {}: {now} now, {published} published", line.variant));
                 }

@@ -1,4 +1,4 @@
-//! Entries of bind group layouts that several passes have.
+//! Bindings and pipelines as several passes have them.
 
 /// A uniform buffer of `size` bytes.
 pub(crate) fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages, size: usize) -> wgpu::BindGroupLayoutEntry {
@@ -97,5 +97,29 @@ pub(crate) fn one_texel(
             wgpu::TextureViewDimension::D2
         }),
         ..Default::default()
+    })
+}
+
+/// A compute pipeline of one entry point; `groups` are its bind groups from 0 on.
+pub(crate) fn compute_pipeline(
+    device: &wgpu::Device,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    entry: &str,
+    groups: &[&wgpu::BindGroupLayout],
+) -> wgpu::ComputePipeline {
+    let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &groups,
+        immediate_size: 0,
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&layout),
+        module,
+        entry_point: Some(entry),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
     })
 }

@@ -1,4 +1,4 @@
-//! Work against precision: the cover map by cell and by way of looking up, against exact casts of each drop's own ray.
+//! Work against precision: the cover map by cell and by way of looking up, against exact casts of each drop's own way.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -9,6 +9,7 @@ use rain_core::cover::lookup::{covered, covered_from};
 use rain_core::cover::{ClassShare, CoverScene, CoverSettings, FallSlope, OccluderId, project};
 use rain_core::hash::{pcg3d, unit_f32};
 use rain_core::rainfall::{CLASS_COUNT, CLASS_SPEEDS_M_S, ClassWeights, Distribution, Spectrum};
+use rain_reference::cover::{Triangle, block, stopped_at};
 use rayon::prelude::*;
 
 /// Every study of this file.
@@ -26,23 +27,10 @@ const HIGHEST_M: f32 = 8.0;
 /// Units: m/s.
 const WIND_M_S: f64 = 10.0;
 
-/// Möller & Trumbore 1997: whether the ray from `origin` along `way` meets the triangle.
-fn hits(origin: DVec3, way: DVec3, [a, b, c]: &[DVec3; 3]) -> bool {
-    let (e1, e2) = (*b - *a, *c - *a);
-    let p = way.cross(e2);
-    let determinant = e1.dot(p);
-    if determinant.abs() < 1e-12 {
-        return false;
-    }
-    let s = origin - *a;
-    let u = s.dot(p) / determinant;
-    let q = s.cross(e1);
-    let v = way.dot(q) / determinant;
-    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && e2.dot(q) / determinant > 0.0
-}
-
 /// 60 m of street: roofs 0.2 m thick at 2.5 to 8 m, buildings of 3 to 8 m; rain of 25 mm/h in a wind of 10 m/s.
 struct Street {
+    /// Of all its solids, for casts and for maps.
+    cast: Vec<Triangle>,
     triangles: Vec<[DVec3; 3]>,
     slope: FallSlope,
     /// In free air up to 3 m.
@@ -110,8 +98,13 @@ impl Street {
             CLASS_SPEEDS_M_S.to_vec(),
             shares().iter().map(|class| class.share).collect(),
         ];
+        let cast: Vec<Triangle> = solids
+            .iter()
+            .flat_map(|[low, high]| block(low.to_array(), high.to_array()))
+            .collect();
         let mut street = Self {
-            triangles: solids.iter().flat_map(block).collect(),
+            triangles: cast.iter().map(|t| t.map(DVec3::from)).collect(),
+            cast,
             slope: FallSlope::from_classes(wind, &speeds, &flux).expect("valid"),
             in_air: points(99, 3.0),
             on_ground: points(98, 0.0),
@@ -124,9 +117,8 @@ impl Street {
 
     /// Whether a drop of a class arrives at a place, by its own ray.
     fn is_hit(&self, place: DVec3, inverse_speed: f64) -> bool {
-        let way = -self.slope.wind_m_s() * inverse_speed;
-        let back = DVec3::new(way.x, 1.0, way.y);
-        self.triangles.iter().any(|triangle| hits(place, back, triangle))
+        let wind = self.slope.wind_m_s().to_array();
+        stopped_at(&self.cast, place.to_array(), wind, 1.0 / inverse_speed).is_some()
     }
 
     fn map(&self, cell_m: f64) -> CoverScene {
@@ -139,31 +131,6 @@ impl Street {
         scene.update();
         scene
     }
-}
-
-/// Twelve triangles around a block.
-fn block([low, high]: &[DVec3; 2]) -> Vec<[DVec3; 3]> {
-    let corner = |i: usize| {
-        DVec3::new(
-            if i & 1 == 0 { low.x } else { high.x },
-            if i & 2 == 0 { low.y } else { high.y },
-            if i & 4 == 0 { low.z } else { high.z },
-        )
-    };
-    let faces = [
-        [0, 1, 3, 2],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 3, 7, 6],
-        [0, 2, 6, 4],
-        [1, 3, 7, 5],
-    ];
-    let two = |[a, b, c, d]: [usize; 4]| [[a, b, c], [a, c, d]];
-    faces
-        .into_iter()
-        .flat_map(two)
-        .map(|triangle| triangle.map(corner))
-        .collect()
 }
 
 /// How a look-up is made.
@@ -307,7 +274,8 @@ fn edge_m(cell_m: f64) -> f64 {
     let offsets = (0..8).map(|i| f64::from(i) / 8.0 * cell_m);
     let width = |offset: f64| {
         let mut scene = CoverScene::new(settings, slope).expect("valid");
-        let roof = block(&[DVec3::new(offset, 4.0, -20.0), DVec3::new(offset + 20.0, 4.2, 20.0)]);
+        let roof = block([offset, 4.0, -20.0], [offset + 20.0, 4.2, 20.0]);
+        let roof: Vec<_> = roof.iter().map(|t| t.map(DVec3::from)).collect();
         scene.add(OccluderId(1), &roof).expect("small");
         scene.update();
         let step = cell_m / 64.0;

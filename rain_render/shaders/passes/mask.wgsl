@@ -42,8 +42,11 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     let right = from_eye(position.xy + vec2<f32>(1.0, 0.0), textureLoad(scene_depth, min(texel + vec2<i32>(1, 0), last), 0));
     let up = from_eye(position.xy - vec2<f32>(0.0, 1.0), textureLoad(scene_depth, max(texel - vec2<i32>(0, 1), vec2<i32>(0)), 0));
     let down = from_eye(position.xy + vec2<f32>(0.0, 1.0), textureLoad(scene_depth, min(texel + vec2<i32>(0, 1), last), 0));
-    let dx = select(p - left, right - p, length(right - p) < length(p - left));
-    let dy = select(p - up, down - p, length(down - p) < length(p - up));
+    // At the picture's rim there is one side alone.
+    let nearer = vec2<bool>(length(right - p) < length(p - left), length(down - p) < length(p - up));
+    let further = (nearer | (texel == vec2<i32>(0))) & (texel != last);
+    let dx = select(p - left, right - p, further.x);
+    let dy = select(p - up, down - p, further.y);
     var normal = normalize(cross(dy, dx));
     normal = select(normal, -normal, dot(normal, p) > 0.0);
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::bindings::{one_texel, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, one_texel, storage_entry, texture_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::{RainfallView, Streak};
 use crate::rainfall::RainfallInput;
@@ -80,19 +80,8 @@ impl RainfallGpu {
                 },
             ],
         });
-        let project_pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain rainfall project"),
-            bind_group_layouts: &[Some(&project_layout)],
-            immediate_size: 0,
-        });
-        let project = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("rain rainfall project"),
-            layout: Some(&project_pipeline_layout),
-            module: &compose::shader(device, "rainfall_project"),
-            entry_point: Some("project"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let module = compose::shader(device, "rainfall_project");
+        let project = compute_pipeline(device, "rain rainfall project", &module, "project", &[&project_layout]);
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain rainfall draw"),

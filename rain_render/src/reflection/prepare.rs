@@ -1,6 +1,6 @@
 //! The pipeline, the bindings of a texture, the commands.
 
-use crate::bindings::{storage_texture_entry, texture_entry};
+use crate::bindings::{compute_pipeline, storage_texture_entry, texture_entry};
 use crate::compose;
 
 /// Format of the mirrored view.
@@ -39,19 +39,8 @@ impl ReflectionMipsGpu {
                 storage_texture_entry(1, compute, REFLECTION_FORMAT),
             ],
         });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain reflection mips"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("rain reflection mips"),
-            layout: Some(&pipeline_layout),
-            module: &compose::shader(device, "reflection_mips"),
-            entry_point: Some("reduce"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let module = compose::shader(device, "reflection_mips");
+        let pipeline = compute_pipeline(device, "rain reflection mips", &module, "reduce", &[&layout]);
         Self { layout, pipeline }
     }
 

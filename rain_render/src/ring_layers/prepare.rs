@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rain_core::waves::CircleMap;
 
 use super::params::RingLayerFrame;
-use crate::bindings::{storage_entry, storage_texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, storage_entry, storage_texture_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::RingLayerParams;
 use crate::slope_mips::{SLOPE_FORMAT, SlopeMipsGpu, SlopeMipsTarget};
@@ -30,19 +30,8 @@ impl RingLayersGpu {
                 storage_texture_entry(2, compute, SLOPE_FORMAT),
             ],
         });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain ring layers"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("rain ring layers"),
-            layout: Some(&pipeline_layout),
-            module: &compose::shader(device, "ring_layers"),
-            entry_point: Some("compose"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let module = compose::shader(device, "ring_layers");
+        let pipeline = compute_pipeline(device, "rain ring layers", &module, "compose", &[&layout]);
         Self { layout, pipeline }
     }
 }

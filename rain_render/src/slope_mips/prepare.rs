@@ -1,7 +1,7 @@
 //! The pipeline, and the bindings of one map.
 
 use super::params::SLOPE_FORMAT;
-use crate::bindings::{storage_texture_entry, texture_entry};
+use crate::bindings::{compute_pipeline, storage_texture_entry, texture_entry};
 use crate::compose;
 
 /// Levels that one dispatch makes: as many as storage textures may be bound.
@@ -48,19 +48,8 @@ impl SlopeMipsGpu {
             label: Some("rain slope mips"),
             entries: &[source, level(1), level(2), level(3), level(4)],
         });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain slope mips"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("rain slope mips"),
-            layout: Some(&pipeline_layout),
-            module: &compose::shader(device, "slope_mips"),
-            entry_point: Some("reduce"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let module = compose::shader(device, "slope_mips");
+        let pipeline = compute_pipeline(device, "rain slope mips", &module, "reduce", &[&layout]);
         let side = 1 << (LEVELS - 1);
         let unused = device.create_texture(&wgpu::TextureDescriptor {
             usage: wgpu::TextureUsages::STORAGE_BINDING,

@@ -3,7 +3,7 @@
 use super::frame::WaterMapFrame;
 use super::params::{MAX_LEVELS, WATER_MAP_FORMAT, WaterMapSettings};
 use super::press::MAX_PRESSES;
-use crate::bindings::{one_texel, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, one_texel, storage_entry, texture_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::{CoverParams, WaterMapParams, WaterStamp};
 
@@ -76,25 +76,13 @@ impl WaterMapPasses {
             entries: &[dynamic(uniform_entry(0, compute, size_of::<WaterStamp>()))],
         });
         let module = compose::shader(device, "water_map");
-        let pipeline = |entry: &str, layouts: &[Option<&wgpu::BindGroupLayout>]| {
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("rain water map"),
-                bind_group_layouts: layouts,
-                immediate_size: 0,
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("rain water map"),
-                layout: Some(&layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
+        let pipeline = |entry: &str, groups: &[&wgpu::BindGroupLayout]| {
+            compute_pipeline(device, "rain water map", &module, entry, groups)
         };
         Self {
-            advance: pipeline("advance", &[Some(&layout)]),
-            press: pipeline("press", &[Some(&layout), Some(&stamp_layout)]),
-            lay: pipeline("lay", &[Some(&layout), Some(&stamp_layout)]),
+            advance: pipeline("advance", &[&layout]),
+            press: pipeline("press", &[&layout, &stamp_layout]),
+            lay: pipeline("lay", &[&layout, &stamp_layout]),
             layout,
             stamp_layout,
             no_cover: one_texel(device, "rain no cover", wgpu::TextureFormat::Depth32Float, 1),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::frame::{MAX_STEPS, WaveFrame};
-use crate::bindings::{storage_entry, storage_texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, storage_entry, storage_texture_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::{WaveBin, WaveParams, WaveSource};
 use crate::slope_mips::{SLOPE_FORMAT, SlopeMipsGpu, SlopeMipsTarget};
@@ -50,27 +50,15 @@ impl WavesGpu {
             entries: &[storage_texture_entry(0, compute, SLOPE_FORMAT)],
         });
         let module = compose::shader(device, "waves");
-        let pipeline = |entry: &str, layouts: &[Option<&wgpu::BindGroupLayout>]| {
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("rain waves"),
-                bind_group_layouts: layouts,
-                immediate_size: 0,
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("rain waves"),
-                layout: Some(&layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
+        let pipeline = |entry: &str, groups: &[&wgpu::BindGroupLayout]| {
+            compute_pipeline(device, "rain waves", &module, entry, groups)
         };
         Self {
-            settle: pipeline("settle", &[Some(&layout)]),
-            gather: pipeline("gather", &[Some(&layout)]),
-            add: pipeline("add", &[Some(&layout)]),
-            step: pipeline("step_levels", &[Some(&layout)]),
-            slopes: pipeline("slopes", &[Some(&layout), Some(&map_layout)]),
+            settle: pipeline("settle", &[&layout]),
+            gather: pipeline("gather", &[&layout]),
+            add: pipeline("add", &[&layout]),
+            step: pipeline("step_levels", &[&layout]),
+            slopes: pipeline("slopes", &[&layout, &map_layout]),
             layout,
             map_layout,
         }

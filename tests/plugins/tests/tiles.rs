@@ -91,6 +91,25 @@ impl Tiles {
         self.test.world().entity_mut(entity).insert(bundle);
     }
 
+    /// A plate's mesh with this colour in every vertex.
+    pub fn painted(&mut self, colour: [f32; 4]) -> Mesh3d {
+        let mesh = Plane3d::default().mesh().size(2.0, 2.0).build();
+        let count = mesh.count_vertices();
+        let mesh = mesh.with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, vec![colour; count]);
+        Mesh3d(self.test.world().resource_mut::<Assets<Mesh>>().add(mesh))
+    }
+
+    /// A material with this map of depths, which shifts nothing.
+    pub fn relief(&mut self, material: StandardMaterial, depths: Handle<Image>) -> MeshMaterial3d<StandardMaterial> {
+        let material = StandardMaterial {
+            depth_map: Some(depths),
+            parallax_depth_scale: 0.0,
+            ..material
+        };
+        let world = self.test.world();
+        MeshMaterial3d(world.resource_mut::<Assets<StandardMaterial>>().add(material))
+    }
+
     pub fn rain(&mut self, intensity_mm_h: f64, seconds: u64) {
         let weather = self.weather;
         self.test

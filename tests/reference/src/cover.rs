@@ -28,6 +28,23 @@ pub fn crossing(triangle: &Triangle, point: [f64; 3], way: [f64; 3]) -> Option<[
     Some([0, 1, 2].map(|i| point[i] + (w[0] * a[i] + w[1] * b[i] + w[2] * c[i]) / sum))
 }
 
+/// The 12 triangles of an axis-parallel box.
+pub fn block(low: [f64; 3], high: [f64; 3]) -> Vec<Triangle> {
+    let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] });
+    [
+        [0, 1, 3, 2],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 3, 7, 6],
+        [0, 2, 6, 4],
+        [1, 3, 7, 5],
+    ]
+    .iter()
+    .flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]])
+    .map(|t| t.map(corner))
+    .collect()
+}
+
 /// Velocity of a drop: `wind` (x, z) sideways, `speed` down, m/s.
 fn velocity(wind: [f64; 2], speed: f64) -> [f64; 3] {
     [wind[0], -speed, wind[1]]

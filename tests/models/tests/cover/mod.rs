@@ -8,7 +8,7 @@ mod shares;
 use glam::{DVec2, DVec3};
 use rain_core::cover::{CoverScene, CoverSettings, FallSlope, OccluderId};
 use rain_core::hash::{pcg3d, unit_f32};
-use rain_reference::cover::Triangle;
+use rain_reference::cover::{Triangle, block};
 
 /// Flux mean of 1/u at 25 mm/h. Units: s/m.
 const MEAN: f64 = 0.169;
@@ -33,23 +33,6 @@ fn scene(triangles: &[Triangle], cell_m: f64, wind: [f64; 2]) -> CoverScene {
     scene.add(OccluderId(1), &triangles).expect("small");
     scene.update();
     scene
-}
-
-/// The 12 triangles of an axis-parallel box.
-fn block(low: [f64; 3], high: [f64; 3]) -> Vec<Triangle> {
-    let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] });
-    [
-        [0, 1, 3, 2],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 3, 7, 6],
-        [0, 2, 6, 4],
-        [1, 3, 7, 5],
-    ]
-    .iter()
-    .flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]])
-    .map(|t| t.map(corner))
-    .collect()
 }
 
 /// Triangles of 2 to 14 m in any position, at 1 to 9 m above the ground.
