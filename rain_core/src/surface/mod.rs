@@ -47,4 +47,6 @@ pub use sheet_flow::{FlowLaw, SheetFlow, recession_share};
 pub use surface_state::{SurfaceState, SurfaceWeights};
 pub use water_colour::{Water, mud_phase, under_water};
 pub use wet_albedo::{WetBody, saturated_albedo, saturated_albedo_f32, wet_albedo, wet_albedo_f32, wet_albedo_rgb};
-pub use wet_roughness::{WATER_F0, film_roughness, film_roughness_f32, widened_roughness};
+pub use wet_roughness::{
+    WATER_F0, closed_film_share, closed_film_share_f32, film_roughness, film_roughness_f32, widened_roughness,
+};

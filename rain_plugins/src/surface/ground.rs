@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy::math::DVec2;
 use bevy::prelude::*;
 use half::f16;
+use rain_core::surface::closed_film_share_f32;
 use rain_ecs::prelude::*;
 
 use super::state::SurfaceState;
@@ -46,12 +47,6 @@ const FILMS_NS: u64 = 250_000_000;
 /// Height of a cell without ground: nothing is near it. Units: m.
 const NO_GROUND_M: f32 = -3e4;
 
-/// Share of a surface that a film covers: it closes as it fills the texture.
-fn film_share(film_mm: f32, texture_mm: f32) -> f32 {
-    let t = (film_mm / texture_mm.max(1e-3)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
 /// Shows the ground's films and pores when they have changed; in the physical way only, which is the ground's, and where
 /// nothing is set by hand.
 pub(super) fn follow_films(
@@ -88,7 +83,7 @@ pub(super) fn follow_films(
     let texture = SurfaceClass::ALL.map(|class| ground.properties(class).texture_depth_mm as f32);
     let texel = |cell: usize| {
         let height = ground.ground_heights()[cell];
-        let share = film_share(film[cell], texture[usize::from(ground.classes()[cell])]);
+        let share = closed_film_share_f32(film[cell], texture[usize::from(ground.classes()[cell])]);
         [
             share,
             saturation[cell],

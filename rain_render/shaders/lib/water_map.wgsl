@@ -1,11 +1,5 @@
 // The water map around the view, and where it gives way to what lies beyond.
 
-// Share of a surface that a film covers: it closes as it fills the texture. Both in mm.
-fn rain_film_cover(film: f32, texture: f32) -> f32 {
-    let t = clamp(film / max(texture, 1e-3), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 // One level over what is known otherwise; it fades towards the distance to which it holds.
 fn rain_water_map_level(map: texture_2d_array<f32>, repeat: sampler, place: vec4<f32>, level: i32, p: vec2<f32>,
                         other: vec4<f32>) -> vec4<f32> {

@@ -97,7 +97,7 @@ fn keep(at: vec2<u32>, column: vec3<f32>, under: Ground) {
     water[index + 2u] = column.z;
     var texel = vec4<f32>(0.0, 0.0, NO_GROUND_M, 0.0);
     if (under.cell >= 0) {
-        let film = rain_film_cover(column.y, under.rules.texture);
+        let film = rain_closed_film(column.y, under.rules.texture);
         texel = vec4<f32>(film, clamp(column.x / under.rules.capacity, 0.0, 1.0), under.height, 1.0);
     }
     textureStore(drawn, at, params.level, texel);

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rain_core::error::{ConfigError, in_range};
+use rain_core::ops;
 use rain_core::weather::{ColumnF32, SurfaceClass};
 
 use super::frame::WaterMapFrame;
@@ -227,10 +228,11 @@ impl WaterMap {
             time_s,
         } = self.pending;
         let of = |(class, rules): (usize, &rain_core::weather::ColumnRules)| {
-            // What drains lies above the texture and is not seen.
-            let soaks = self.fullest[class].film_mm > 0.0;
+            let fullest = self.fullest[class].film_mm;
+            let soaks = fullest > 0.0;
             let soil = f64::from(rules.soil_mm_s + rules.dry_soil_mm_s) * time_s;
-            let moved = rain_mm + evaporation_mm + if soaks { soil } else { 0.0 };
+            let drains = visible_drain_mm(rules, fullest, time_s);
+            let moved = rain_mm + evaporation_mm + drains + if soaks { soil } else { 0.0 };
             let texture = if rules.texture_mm > 0.0 {
                 rules.texture_mm
             } else {
@@ -487,4 +489,15 @@ impl WaterMapPlace {
             coarse: place(2),
         }
     }
+}
+/// The most that the drain may take in a time from films up to `fullest_mm` that are not closed: half the texture's depth
+/// above it they are, and lose nothing to be seen. Units: mm.
+fn visible_drain_mm(rules: &rain_core::weather::ColumnRules, fullest_mm: f32, time_s: f64) -> f64 {
+    let above = f64::from((fullest_mm - rules.texture_mm).min(0.5 * rules.texture_mm));
+    if !(above > 0.0 && rules.drain > 0.0) {
+        return 0.0;
+    }
+    // w' = −κ w^(5/3).
+    let root = 1.0 / ops::cbrt(above * above) + 2.0 / 3.0 * f64::from(rules.drain) * time_s;
+    above - 1.0 / (root * ops::sqrt(root))
 }

@@ -2,6 +2,7 @@
 
 use rain_core::optics::disc_share_within;
 use rain_core::rainfall::contrast_gain;
+use rain_core::surface::{closed_film_share, film_roughness};
 
 use crate::device::{device, kernel, library};
 
@@ -121,16 +122,41 @@ fn clearance_grows_with_the_slope_and_ends() {
 }
 
 #[test]
-fn a_film_closes_at_the_texture_depth() {
+fn a_film_closes_above_the_texture() {
     // Water level and texture depth in mm; exposure.
-    let input: Vec<[f32; 4]> = steps(0.0, 2.0, 40).map(|level| [level, 0.8, 0.5, 0.0]).collect();
+    let mut input: Vec<[f32; 4]> = steps(0.0, 3.0, 60).map(|level| [level, 0.8, 0.5, 0.0]).collect();
+    input.extend(steps(0.0, 0.2, 60).map(|level| [level, 0.05, 1.0, 0.0]));
     let function = "vec4<f32>(rain_point_film(vec4<f32>(1.0, v.x, v.y, 0.0), v.z))";
     let Some(found) = evaluate(function, &input) else {
         return;
     };
     for (i, f) in input.iter().zip(&found) {
-        let t = (i[0] * i[2] / i[1]).min(1.0);
-        assert!((f[0] - t * t * (3.0 - 2.0 * t)).abs() < 1e-5, "{i:?}: {f:?}");
+        let wanted = closed_film_share(f64::from(i[0] * i[2]), f64::from(i[1]));
+        assert!((f64::from(f[0]) - wanted).abs() < 1e-5, "{i:?}: {f:?}, not {wanted}");
     }
-    assert!(found[0][0] == 0.0 && found[39][0] == 1.0);
+    assert!(found[0][0] == 0.0 && found[59][0] == 1.0);
+}
+
+#[test]
+fn the_roughness_under_a_film_is_the_cpus() {
+    // Perceptual roughness of the bare ground and of the film; film over a texture of 1 mm.
+    let mut input = Vec::new();
+    for dry in [0.2_f32, 0.45, 0.9, 1.0] {
+        for water in [0.05_f32, 0.16, 0.22] {
+            input.extend(steps(0.0, 2.0, 30).map(|film| [dry, water, film, 0.0]));
+        }
+    }
+    let function = "vec4<f32>(rain_film_roughness(v.x, v.y, rain_closed_film(v.z, 1.0)))";
+    let Some(found) = evaluate(function, &input) else {
+        return;
+    };
+    for ([dry, water, film, _], f) in input.into_iter().zip(&found) {
+        let square = |x: f32| f64::from(x) * f64::from(x);
+        let wanted = film_roughness(square(dry), square(water), film.into(), 1.0).sqrt();
+        assert!(
+            (f64::from(f[0]) - wanted).abs() < 1e-5,
+            "{dry} {water} {film}: {} not {wanted}",
+            f[0]
+        );
+    }
 }

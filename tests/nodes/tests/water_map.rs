@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use rain_core::hash::{pcg3d, unit_f32};
+use rain_core::surface::closed_film_share;
 use rain_core::surface::ground::{Ground, GroundDomain, GroundScene, GroundSettings};
 use rain_core::weather::{ColumnF32, ColumnForcing, ColumnRules, SurfaceClass, SurfaceColumn};
 use rain_render::cover::{CoverPlacement, open_sky};
@@ -485,6 +486,52 @@ fn nothing_is_done_while_dry_settled_or_unchanged() {
     assert!((20..60).contains(&steps), "{steps} steps");
     assert_eq!(rig.map.rest(true), Some(WaterMapRest::Dry));
     assert!(!rig.map.is_shown(), "nothing is remembered any more");
+}
+
+#[test]
+fn a_film_that_runs_off_is_followed_until_only_the_texture_holds_water() {
+    let Some(gpu) = device() else { return };
+    let settings = WaterMapSettings {
+        seen_share: 0.002,
+        interval_s: 0.25,
+        ..small()
+    };
+    let mut rig = Rig::new(&gpu, &settings);
+    let cell = GroundCell {
+        height_m: 0.0,
+        class: 0,
+        exposure: 255,
+    };
+    rig.map
+        .set_ground(&place(128), vec![cell; 128 * 128].iter().copied())
+        .unwrap();
+    rig.map.follow([0.0, 0.0]);
+    for _ in 0..1200 {
+        rig.map.advance(40.0 / 3600.0, 0.0, 1.0, false).unwrap();
+        rig.frame(&gpu, dry);
+    }
+    let share = |rig: &Rig| {
+        let film = rig.at(&rig.water(&gpu), 0, 1.0, 1.0)[1];
+        closed_film_share(film.into(), 0.8)
+    };
+    assert!(share(&rig) > 0.99, "{}", share(&rig));
+    // A minute at a time: many steps at first, few when little is left above the texture.
+    let mut steps = Vec::new();
+    let mut shares = Vec::new();
+    for _ in 0..40 {
+        let mut minute = 0;
+        for _ in 0..60 {
+            rig.map.advance(0.0, 0.0, 1.0, false).unwrap();
+            minute += u32::from(rig.frame(&gpu, dry));
+        }
+        steps.push(minute);
+        shares.push(share(&rig));
+    }
+    assert!(steps[0] > 20 && steps[39] <= 1, "{steps:?}");
+    assert!(shares.windows(2).all(|pair| pair[1] <= pair[0] + 1e-3), "{shares:?}");
+    // Half an hour after: 0.8 mm and (22.6)^(-1.5) = 0.009 mm above.
+    let wanted = closed_film_share(0.8093, 0.8);
+    assert!((shares[29] - wanted).abs() < 0.01, "{} not {wanted}", shares[29]);
 }
 
 #[test]

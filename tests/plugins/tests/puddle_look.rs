@@ -575,3 +575,57 @@ fn puddles_displace_no_geometry() {
     assert!(before.iter().any(|b| *b) && before.iter().any(|b| !*b));
     assert!(before == after, "the edge of the plate has moved");
 }
+
+#[test]
+fn a_road_loses_its_mirror_after_the_rain_and_keeps_its_wetness() {
+    if !gpu::available() {
+        return;
+    }
+    let mut pond = Pond::new(GRAZING, Vec3::ZERO);
+    pond.wall(Color::BLACK, [-12.0, 12.0], [-1.0, 30.0]);
+    for bar in 0..20_u8 {
+        let low = 0.6 * f32::from(bar);
+        pond.bar(RED, [low, low + 0.3]);
+    }
+    let all = pond.pixels(|d| d <= 0.0);
+    let dry = mean(&pond.test.picture(), &all, |[_, g, b]| 0.5 * (g + b));
+    let damp = Weather {
+        net_radiation_w_m2: 0.0,
+        relative_humidity: 1.0,
+        ..Weather::rain(0.0)
+    };
+    pond.weather(Weather {
+        intensity_mm_h: 40.0,
+        ..damp.clone()
+    });
+    pond.test.leap(1800);
+    pond.weather(damp);
+    pond.test.frames(4, FRAME);
+    let (road, deep) = (pond.pixels(|d| d == 0.0), pond.pixels(|d| d > 0.01));
+    let mut seen = Vec::new();
+    for wait in [0, 300, 1500] {
+        if wait > 0 {
+            pond.test.leap(wait);
+            pond.test.frames(4, FRAME);
+        }
+        let picture = [pond.test.picture()];
+        let film = pond
+            .test
+            .world()
+            .get::<WeatherState>(pond.weather)
+            .expect("the weather")
+            .water_level_mm(SurfaceClass::Asphalt);
+        let (mirror, dark) = (
+            mean(&picture[0], &road, redness),
+            mean(&picture[0], &road, |[_, g, b]| 0.5 * (g + b)),
+        );
+        let (on_road, on_pond) = (sharpness(&picture, &road), sharpness(&picture, &deep));
+        eprintln!("film {film:.3} mm: road {mirror:.2}, bars {on_road:.3}, {dark:.1} of {dry:.1}; pond {on_pond:.3}");
+        assert!(dark < 0.8 * dry, "the road is wet");
+        seen.push((mirror, on_road, on_pond));
+    }
+    let ((wet, wet_bars, wet_pond), (_, early_bars, _), (_, late_bars, late_pond)) = (seen[0], seen[1], seen[2]);
+    assert!(wet > 2.0, "it mirrors at the end of the rain: {wet}");
+    assert!(early_bars < 0.95 * wet_bars && late_bars < 0.8 * wet_bars, "{seen:?}");
+    assert!(late_pond > 0.95 * wet_pond, "the puddle stays a mirror: {seen:?}");
+}

@@ -9,7 +9,8 @@
     view_transformations::{direction_view_to_world, frag_coord_to_ndc, position_ndc_to_view},
 }
 #import rain::surface::{
-    SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_wet_albedo,
+    SurfaceParams, rain_exposure, rain_exposure_bias, rain_catch, rain_point_wetness, rain_point_film, rain_film_roughness,
+    rain_wet_albedo,
     rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
     rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_noise_puddle, rain_normal_aslant, rain_udn,
     rain_film_texel, rain_memory_of, rain_memory_share, rain_puddle_rim, rain_water_map,
@@ -61,8 +62,8 @@ struct Wetting {
 
 // Perceptual roughness of still water: a mirror, as far as lamps of finite size let it be one.
 const WATER_ROUGHNESS: f32 = 0.045;
-// Perceptual roughness of a water film on a rough road.
-const FILM_ROUGHNESS: f32 = 0.16;
+// Perceptual roughness of a closed film on a rough road: it follows the stones in part. Chosen by eye.
+const FILM_ROUGHNESS: f32 = 0.22;
 // Reflectance of water: F0 = 0.02 = 0.16 r².
 const WATER_REFLECTANCE: f32 = 0.357;
 // Depth of a puddle that a material or component asks for, m.
@@ -273,7 +274,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     pbr.material.base_color = vec4<f32>(body, pbr.material.base_color.a);
     // Damp pores shine a little; a closed film is as smooth as drops leave it.
     let damp = mix(pbr.material.perceptual_roughness, 0.45, 0.75 * wetness);
-    var rough = mix(min(pbr.material.perceptual_roughness, damp), FILM_ROUGHNESS, film);
+    var rough = rain_film_roughness(min(pbr.material.perceptual_roughness, damp), FILM_ROUGHNESS, film);
     rough = min(pbr.material.perceptual_roughness, rough);
     // Reflections: a film follows the road's grain, standing water does not.
     let water = water_surface(p, ddx, ddy, depth, exposure * placed.ripples);

@@ -6,8 +6,9 @@ use rain_core::surface::artist_look::{
     nguyenova_puddle, nguyenova_puddle_amount, nguyenova_puddle_depth_mm, painted_puddle_water, screen_blend,
 };
 use rain_core::surface::{
-    SurfaceState, SurfaceWeights, WATER_F0, Water, WetBody, film_roughness, film_roughness_f32, mud_phase,
-    saturated_albedo, saturated_albedo_f32, under_water, wet_albedo, wet_albedo_f32, wet_albedo_rgb, widened_roughness,
+    SurfaceState, SurfaceWeights, WATER_F0, Water, WetBody, closed_film_share, closed_film_share_f32, film_roughness,
+    film_roughness_f32, mud_phase, saturated_albedo, saturated_albedo_f32, under_water, wet_albedo, wet_albedo_f32,
+    wet_albedo_rgb, widened_roughness,
 };
 use rain_reference::surface as truth;
 
@@ -441,7 +442,11 @@ fn the_four_states_follow_pores_and_film() {
                     (s.drenched, covered - puddle),
                     (s.wet, w * (1.0 - covered)),
                     (s.dry, (1.0 - w) * (1.0 - covered)),
-                    (film_roughness(0.6, w, h, t), 0.6 - (0.6 - w) * covered),
+                    (closed_film_share(h, t), ramp(0.5 * t, 1.5 * t, h)),
+                    (
+                        film_roughness(0.6, w, h, t),
+                        one_lobe(0.6, w, ramp(0.5 * t, 1.5 * t, h)),
+                    ),
                 ] {
                     worst.absolute(found, exact, || format!("{w} {h} {texture}"));
                 }
@@ -451,14 +456,27 @@ fn the_four_states_follow_pores_and_film() {
         }
     }
     assert!(wrong.error > 0.05, "a film 5 % off goes unseen");
-    worst.assert_below(3e-16, 40_000);
+    worst.assert_below(5e-16, 40_000);
+}
+
+/// Width of one lobe as high as two that share a surface.
+fn one_lobe(bare: f64, flooded: f64, share: f64) -> f64 {
+    if share > 0.0 && flooded == 0.0 {
+        return 0.0;
+    }
+    let heights = (1.0 - share) / bare.powi(2) + if share > 0.0 { share / flooded.powi(2) } else { 0.0 };
+    heights.sqrt().recip()
 }
 
 #[test]
 fn water_is_smooth_and_waves_widen_it() {
     assert_eq!(rain_core::optics::normal_reflectance(1.333), WATER_F0);
     assert_eq!(film_roughness(0.6, 0.04, 0.0, 0.8), 0.6);
-    assert!((film_roughness(0.6, 0.04, 0.8, 0.8) - 0.04).abs() < 1e-16);
+    assert!((film_roughness(0.6, 0.04, 1.2, 0.8) - 0.04).abs() < 1e-16);
+    assert!(
+        (film_roughness(0.6, 0.04, 0.8, 0.8) - 0.056_443_252).abs() < 1e-7,
+        "full texture: half of its tops are bare"
+    );
     assert_eq!(
         film_roughness(0.6, 0.04, 0.1, 0.0),
         0.04,
@@ -470,7 +488,11 @@ fn water_is_smooth_and_waves_widen_it() {
     let (mut single, mut widened, mut wrong) = (Worst::default(), Worst::default(), Worst::default());
     for texture in [0.0_f32, 0.01, 0.8, 37.0, 1e3] {
         for i in 0..=1000_u16 {
-            let h = texture.max(0.01) * f32::from(i) / 700.0;
+            let h = texture.max(0.01) * f32::from(i) / 600.0;
+            let closed = closed_film_share(h.into(), texture.into());
+            single.absolute(f64::from(closed_film_share_f32(h, texture)), closed, || {
+                format!("{h} {texture}")
+            });
             for (dry, water) in [(0.6_f32, 0.04_f32), (0.0, 1.0), (1.0, 0.0), (0.3, 0.3)] {
                 let exact = film_roughness(dry.into(), water.into(), h.into(), texture.into());
                 single.absolute(f64::from(film_roughness_f32(dry, water, h, texture)), exact, || {
@@ -479,7 +501,7 @@ fn water_is_smooth_and_waves_widen_it() {
             }
         }
     }
-    single.assert_below(2e-7, 20_000);
+    single.assert_below(5e-7, 20_000);
     for i in 0..=100 {
         let a = f64::from(i) / 100.0;
         for slopes in log_spaced(1e-12, 1e6, 100).chain([0.0]) {
