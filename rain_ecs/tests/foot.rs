@@ -2,6 +2,7 @@
 
 use bevy_app::App;
 use bevy_ecs::message::Messages;
+use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Vec3};
 use bevy_transform::components::Transform;
 use rain_ecs::prelude::*;
@@ -116,5 +117,21 @@ fn painted_puddles_splash_when_the_weather_has_flooded_them() {
     app.world_mut().resource_mut::<FootSplashSettings>().least_depth_m = 0.004;
     assert!(ask(&mut app).is_empty(), "nothing has gathered yet");
     run(&mut app, 10);
+    assert_eq!(ask(&mut app), [0.01]);
+    // A level set by hand is what the picture shows and what feet step into.
+    let weather = app
+        .world_mut()
+        .query_filtered::<Entity, With<Weather>>()
+        .single(app.world())
+        .expect("one");
+    let by_hand = |water_level| WaterByHand {
+        wetness: None,
+        water_level,
+    };
+    app.world_mut().entity_mut(weather).insert(by_hand(Some(0.0)));
+    run(&mut app, 1);
+    assert!(ask(&mut app).is_empty(), "dry by hand");
+    app.world_mut().entity_mut(weather).insert(by_hand(Some(1.0)));
+    run(&mut app, 1);
     assert_eq!(ask(&mut app), [0.01]);
 }

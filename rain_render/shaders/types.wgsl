@@ -133,7 +133,7 @@ struct ReflectionParams {
     clip_from_eye: mat4x4<f32>,
     // World position of the eye it belongs to, m; w: strength, 0 when there is none.
     eye: vec4<f32>,
-    // x: height of the mirror above the eye, m; y, z, w unused.
+    // x: height of the mirror above the eye, m; y, z, w: where the eye it belongs to looks.
     plane: vec4<f32>,
 }
 

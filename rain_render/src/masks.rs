@@ -19,6 +19,7 @@ pub struct MaskGpu {
     sampler: wgpu::Sampler,
     /// Stands for a ground that is not there.
     nothing: wgpu::TextureView,
+    nothing_near: wgpu::TextureView,
 }
 
 /// What the mask pass reads of the ground; without one, the weather and the cover alone tell what is wet.
@@ -28,6 +29,8 @@ pub struct GroundMaps<'a> {
     pub films: &'a wgpu::TextureView,
     /// Levels of standing water (R32Float), see `rain_standing_water`.
     pub levels: &'a wgpu::TextureView,
+    /// The finer films and pores near the view (Rgba16Float, an array), see `rain_water_map`.
+    pub near: &'a wgpu::TextureView,
 }
 
 /// Targets of the mask pass.
@@ -55,12 +58,12 @@ impl MaskGpu {
             },
             count: None,
         };
-        let colour = |binding, filterable| wgpu::BindGroupLayoutEntry {
+        let colour = |binding, filterable, view_dimension| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
             ty: wgpu::BindingType::Texture {
                 sample_type: wgpu::TextureSampleType::Float { filterable },
-                view_dimension: wgpu::TextureViewDimension::D2,
+                view_dimension,
                 multisampled: false,
             },
             count: None,
@@ -80,14 +83,15 @@ impl MaskGpu {
                 },
                 depth(1),
                 depth(2),
-                colour(3, true),
+                colour(3, true, wgpu::TextureViewDimension::D2),
                 wgpu::BindGroupLayoutEntry {
                     binding: 4,
                     visibility: wgpu::ShaderStages::FRAGMENT,
                     ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                     count: None,
                 },
-                colour(5, false),
+                colour(5, false, wgpu::TextureViewDimension::D2),
+                colour(6, true, wgpu::TextureViewDimension::D2Array),
             ],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -122,6 +126,16 @@ impl MaskGpu {
             multiview_mask: None,
             cache: None,
         });
+        let nothing = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("rain masks: no ground"),
+            size: wgpu::Extent3d::default(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba16Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
         Self {
             layout,
             pipeline,
@@ -135,20 +149,16 @@ impl MaskGpu {
                 label: Some("rain masks"),
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
+                // The near map's texels lie where its place repeats.
+                address_mode_u: wgpu::AddressMode::Repeat,
+                address_mode_v: wgpu::AddressMode::Repeat,
                 ..Default::default()
             }),
-            nothing: device
-                .create_texture(&wgpu::TextureDescriptor {
-                    label: Some("rain masks: no ground"),
-                    size: wgpu::Extent3d::default(),
-                    mip_level_count: 1,
-                    sample_count: 1,
-                    dimension: wgpu::TextureDimension::D2,
-                    format: wgpu::TextureFormat::Rgba16Float,
-                    usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                    view_formats: &[],
-                })
-                .create_view(&wgpu::TextureViewDescriptor::default()),
+            nothing: nothing.create_view(&wgpu::TextureViewDescriptor::default()),
+            nothing_near: nothing.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            }),
         }
     }
 
@@ -174,7 +184,8 @@ impl MaskGpu {
             surface,
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&view));
-        let (films, levels) = ground.map_or((&self.nothing, &self.nothing), |g| (g.films, g.levels));
+        let without = (&self.nothing, &self.nothing, &self.nothing_near);
+        let (films, levels, near) = ground.map_or(without, |g| (g.films, g.levels, g.near));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain masks"),
@@ -186,6 +197,7 @@ impl MaskGpu {
                 entry(3, wgpu::BindingResource::TextureView(films)),
                 entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
                 entry(5, wgpu::BindingResource::TextureView(levels)),
+                entry(6, wgpu::BindingResource::TextureView(near)),
             ],
         })
     }

@@ -190,7 +190,7 @@ pub(super) fn splash(
     let weather = active.and_then(|active| weather.get(active.entity()?).ok());
     for step in steps.read() {
         let painted = step.painted.zip(weather).map_or(0.0, |(paint, weather)| {
-            let level = weather.artist().puddles;
+            let level = weather.shown_levels().puddles;
             let water = painted_puddle_water(level, f64::from(paint.depth), f64::from(paint.margin));
             water * f64::from(paint.full_depth_m.clamp(0.0, 1.0))
         });

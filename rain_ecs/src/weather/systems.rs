@@ -72,12 +72,14 @@ pub(super) fn choose_weather(
 /// Reads the speeds of the present rain out of the table; under a timeline, of the rain at the end of the last tick.
 pub(super) fn follow_rain_types(
     active: Res<ActiveWeather>,
-    mut weathers: Query<(&Weather, &RainTypeTable, &mut ArtistControls)>,
+    mut weathers: Query<(&Weather, &WeatherState, &RainTypeTable, &mut ArtistControls)>,
 ) {
-    let Some((weather, table, mut controls)) = active.entity().and_then(|e| weathers.get_mut(e).ok()) else {
+    let Some((weather, state, table, mut controls)) = active.entity().and_then(|e| weathers.get_mut(e).ok()) else {
         return;
     };
-    let row = table.0.at(weather.intensity_mm_h);
+    // A weather that is refused rains on as it did.
+    let conditions = weather.conditions().validated().unwrap_or(state.last_good);
+    let row = table.0.at(conditions.intensity_mm_h);
     let settings = row.settings(&controls.0);
     controls.set_if_neq(ArtistControls(settings));
 }

@@ -235,7 +235,7 @@ fn surface_params(
         view.map_or_else(ReflectionParams::default, |view| ReflectionParams {
             clip_from_eye: view.clip_from(eye).to_cols_array_2d(),
             eye: view.eye.extend(surface.mirror_strength).to_array(),
-            plane: [view.height - eye.y, 0.0, 0.0, 0.0],
+            plane: [view.height - eye.y, view.forward.x, view.forward.y, view.forward.z],
         })
     });
     let mut water = surface.water;
@@ -330,8 +330,9 @@ pub(super) fn prepare_rain(
         .as_ref()
         .filter(|s| s.shown)
         .and_then(|s| s.images)
-        .and_then(|ids| Some((images.get(ids.films)?, images.get(ids.levels)?)));
-    let ground_maps = ground_maps.map(|(films, levels)| GroundMaps {
+        .and_then(|ids| Some((images.get(ids.films)?, images.get(ids.levels)?, images.get(ids.map)?)));
+    let ground_maps = ground_maps.map(|(films, levels, near)| GroundMaps {
+        near: &near.texture_view,
         films: &films.texture_view,
         levels: &levels.texture_view,
     });

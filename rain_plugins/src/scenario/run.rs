@@ -52,6 +52,9 @@ pub enum RunError {
         "no usable graphics device: install a Vulkan driver (Debian: apt-get install mesa-vulkan-drivers libvulkan1)"
     )]
     NoAdapter,
+    /// The scene's ground cannot be built as the scenario asks.
+    #[error("the ground: {0}")]
+    Ground(String),
     /// The renderer stopped.
     #[error("{0}")]
     Renderer(String),

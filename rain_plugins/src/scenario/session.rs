@@ -10,6 +10,7 @@ use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use image::RgbImage;
+use rain_core::surface::ground::GroundError;
 use rain_ecs::prelude::*;
 
 use super::file::{Mask, Rings, Scenario};
@@ -134,7 +135,17 @@ impl Session {
         stage::pose(&mut self.app, to_ns as f64 * 1e-9);
         let step = to_ns.saturating_sub(self.now_ns);
         self.now_ns = to_ns.max(self.now_ns);
-        headless::step(&mut self.app, Duration::from_nanos(step))
+        headless::step(&mut self.app, Duration::from_nanos(step))?;
+        match self
+            .app
+            .world()
+            .get_resource::<SurfaceGround>()
+            .and_then(SurfaceGround::error)
+        {
+            // A scene of houses alone is one, too.
+            None | Some(GroundError::NoGround) => Ok(()),
+            Some(error) => Err(RunError::Ground(error.to_string())),
+        }
     }
 
     fn set_active(&mut self, active: bool) {

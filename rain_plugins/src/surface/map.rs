@@ -11,11 +11,14 @@ use rain_render::water_map::{
 use super::ground::LevelsFromGround;
 use super::state::SurfaceState;
 use super::water::WaterLevels;
-use crate::rainfall::RainView;
+use crate::rainfall::{RainView, amid_eyes, leading_view};
 use crate::report::{PassName, RainReport, SkipReason};
 
 /// Unseen for longer than this while it rained: what happened meanwhile is the ground's to tell. Units: ns.
 const UNSEEN_NS: u64 = 10_000_000_000;
+
+/// Views up to this from the middle of all of them share the finest texels. Units: sides of the finest level.
+const REACH: f64 = 0.375;
 
 /// Settings of the water map. Changes take effect when the app starts.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
@@ -42,15 +45,15 @@ pub(crate) struct MapHandover {
     pub wanted: bool,
 }
 
-/// The water map around the first active view. It shows what the simulation's ground knows and adds what is only seen:
+/// The water map around the active views, or around the leading one where they lie too far apart. It shows what the simulation's ground knows and adds what is only seen:
 /// it is no state, starts anew from the ground where the view comes to, and after a rewind or a restored snapshot.
 #[derive(Resource, Debug)]
 pub struct GroundMap {
     map: WaterMap,
     /// Build, first cell and number of cells that it knows, and whether all their exposure was known.
     ground: Option<(u64, UVec2, UVec2, bool)>,
-    /// Time and fallen rain (mm) that it has seen.
-    seen: Option<(u64, f64)>,
+    /// Time and fallen rain (mm) that it has seen, and whose rain that is.
+    seen: Option<(u64, f64, Entity)>,
     pub(crate) handover: MapHandover,
 }
 
@@ -109,7 +112,7 @@ pub(super) fn follow_map(
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
     mut presses: Option<ResMut<FilmPresses>>,
-    views: Query<(&Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
 ) {
     let this = map.bypass_change_detection();
     this.handover.wanted = false;
@@ -126,31 +129,39 @@ pub(super) fn follow_map(
         let _ = this.map.press(&press);
     }
     let skip = |reason| report.skipped(PassName::WaterMap, reason);
-    let eye = views.iter().find(|(c, _)| c.is_active).map(|(_, t)| t.translation());
-    let Some(eye) = eye else {
+    let place = |at: &GlobalTransform| at.translation().as_dvec3();
+    let Some(lead) = leading_view(views.iter()).map(place) else {
         skip(SkipReason::NoView);
         return;
     };
-    let state = active.entity().and_then(|entity| weather.get(entity).ok());
+    // Amid all views while each has finest texels around it, else around the leading one.
+    let eyes = views.iter().filter(|(_, camera, _)| camera.is_active);
+    let settings = this.map.settings();
+    let reach = REACH * settings.level_cell_m(0) * f64::from(settings.texels);
+    let eye = amid_eyes(lead, eyes.map(|(_, _, at)| place(at)), reach).unwrap_or(lead);
+    let state = active
+        .entity()
+        .and_then(|entity| Some((entity, weather.get(entity).ok()?)));
     let known = ground.as_ref().and_then(|g| Some((g, g.ground()?, shown.window()?)));
-    let (Some(state), Some((source, ground, (builds, first)))) = (state, known) else {
+    let (Some((entity, state)), Some((source, ground, (builds, first)))) = (state, known) else {
         this.map.take_ground_away();
         (this.ground, this.seen) = (None, None);
         skip(SkipReason::NoGround);
         return;
     };
-    if surface.artist.w > 0.5 {
-        // The artists' way has levels of its own.
+    if surface.artist.w > 0.5 || surface.by_hand.is_set() {
+        // The artists' way has levels of its own, and what is set by hand leaves no trace.
         this.map.forget();
         this.seen = None;
         skip(SkipReason::Disabled);
         return;
     }
-    let now = (clock.now_ns(), state.rain_mm());
-    let (before_ns, before_mm) = this.seen.replace(now).unwrap_or(now);
-    let rain_mm = now.1 - before_mm;
+    let now = (clock.now_ns(), state.rain_mm(), entity);
+    let (before_ns, before_mm, before) = this.seen.replace(now).unwrap_or(now);
+    // Each weather counts its own rain.
+    let rain_mm = if entity == before { now.1 - before_mm } else { 0.0 };
     let unseen = now.0.saturating_sub(before_ns) > UNSEEN_NS && rain_mm > 0.0;
-    if now.0 < before_ns || rain_mm < 0.0 || unseen {
+    if now.0 < before_ns || rain_mm < 0.0 || unseen || entity != before {
         this.map.forget();
     }
     let ground_now = (builds, first, levels.cells, source.is_exposure_known());
@@ -173,7 +184,7 @@ pub(super) fn follow_map(
         }
     }
     this.ground = Some(ground_now);
-    this.map.follow([eye.x, eye.z].map(f64::from));
+    this.map.follow([eye.x, eye.z]);
     let time_s = now.0.saturating_sub(before_ns) as f64 * 1e-9;
     let evaporation_mm = state.evaporation_mm_h().max(0.0) * time_s / 3600.0;
     // The weather has been validated before it became state.

@@ -25,7 +25,7 @@ pub struct PlanarReflection {
     pub height_m: Option<f32>,
 }
 
-/// Size of a mirrored view. Set it before the first view asks for one. Units: px. Default: 640 × 360.
+/// Size of a mirrored view; that of the moment when the first view asks for one holds. Units: px. Default: 640 × 360.
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Resource, Default)]
 pub struct ReflectionSize(pub UVec2);
@@ -49,6 +49,8 @@ pub struct RainMirrorView {
 pub struct MirrorView {
     /// The eye that it belongs to. Units: m, world.
     pub eye: Vec3,
+    /// Where that looks: another view may look elsewhere from the same place.
+    pub forward: Vec3,
     /// Of the mirror. Units: m, world.
     pub height: f32,
     /// Its image under the plane.
@@ -149,11 +151,12 @@ fn aim(
     if strength <= 0.0 {
         return Err(SkipReason::Disabled);
     }
-    if !surface.wet {
+    if !surface.wet && !surface.placed {
         return Err(SkipReason::Dry);
     }
-    // Where no rain can be in sight, no ground is wet.
-    if closed_in == Some(view.entity) {
+    // Where no rain can be in sight, no ground is wet but by hand.
+    let by_hand = surface.placed || surface.by_hand.water_level.is_some_and(|level| level > 0.0);
+    if closed_in == Some(view.entity) && !by_hand {
         return Err(SkipReason::Indoors);
     }
     let Projection::Perspective(own) = view.projection else {
@@ -180,6 +183,7 @@ fn aim(
     Ok(Aim {
         view: MirrorView {
             eye,
+            forward: view.transform.forward().into(),
             height,
             mirrored_eye: transform.translation,
             clip_from_mirrored_eye: projection.get_clip_from_view() * turned.inverse(),
@@ -207,14 +211,14 @@ pub(super) fn aim_mirrors(
     surface: Res<SurfaceState>,
     levels: Res<WaterLevels>,
     appearance: Res<WaterAppearance>,
-    (size, water): (Res<ReflectionSize>, Res<WaterImages>),
+    (wanted_size, water): (Res<ReflectionSize>, Res<WaterImages>),
     report: Res<RainReport>,
     air: Option<Res<AirAroundView>>,
     views: Query<Mirrored, (With<RainView>, Without<RainMirrorView>)>,
     mut mirrors: Query<MirrorCamera>,
     mut images: ResMut<Assets<Image>>,
     mut wet: ResMut<Assets<WetMaterial>>,
-    mut layers: Local<usize>,
+    mut kept: Local<(usize, UVec2)>,
 ) {
     frame.views = default();
     let mut asking: Vec<_> = views.iter().filter(|v| v.camera.is_active).collect();
@@ -234,10 +238,15 @@ pub(super) fn aim_mirrors(
             Err(reason) => report.skipped(PassName::Reflection, reason),
         }
     }
+    let (layers, size) = &mut *kept;
+    if *layers == 0 {
+        // Mirrors and the texture that keeps them are of one size for good.
+        *size = wanted_size.0;
+    }
     let wanted = aims.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
     if wanted > *layers {
         *layers = wanted;
-        let grown = images.insert(water.reflection.id(), reflection_image(size.0, wanted as u32));
+        let grown = images.insert(water.reflection.id(), reflection_image(*size, wanted as u32));
         debug_assert!(grown.is_ok(), "the handle is alive");
         // What is bound is the old texture.
         for _ in wet.iter_mut() {}
@@ -271,7 +280,7 @@ pub(super) fn aim_mirrors(
         let Some(aim) = aim.filter(|_| !spawned[layer as usize]) else {
             continue;
         };
-        let target = images.add(reflection_target(size.0));
+        let target = images.add(reflection_target(*size));
         commands.spawn((
             RainMirrorView { layer },
             mirror_camera(target),

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use rain_ecs::prelude::*;
 
 use super::materials::SurfaceWetting;
-use super::paint::PuddlePaint;
+use super::paint::{NoisePuddles, PuddlePaint};
 use super::water::WaterLevels;
 use crate::rainfall::{RainView, leading_view};
 use crate::render_adapter::WetSurfaceHandles;
@@ -38,7 +38,7 @@ pub struct SurfaceState {
     pub wet: bool,
     /// Wet materials are in the scene: something is wet, painted, or of a fixed state.
     pub shown: bool,
-    /// A mesh shows a fixed state whatever the weather: a puddle, perhaps.
+    /// Water that artists placed shows: fixed or painted puddles, or those of noise, that their levels fill.
     pub placed: bool,
     /// The buffer that the shaders read.
     pub handles: WetSurfaceHandles,
@@ -69,18 +69,27 @@ pub(super) fn follow_weather(
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
-    painted: Query<(), With<PuddlePaint>>,
+    painted: Query<&PuddlePaint>,
+    noises: Query<&NoisePuddles>,
     refined: Query<&SurfaceWetting>,
     levels: Res<WaterLevels>,
 ) {
-    surface.placed = refined.iter().any(|wetting| wetting.state.is_some());
-    surface.shown = !painted.is_empty() || surface.placed || refined.iter().any(SurfaceWetting::is_by_hand);
+    let fixed = refined.iter().any(|wetting| wetting.state.is_some());
+    surface.shown = !painted.is_empty() || fixed || refined.iter().any(SurfaceWetting::is_by_hand);
     let eye = leading_view(views).map(GlobalTransform::translation);
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
+    let puddles = refined.iter().any(|w| {
+        matches!(
+            w.state,
+            Some(rain_core::surface::SurfaceState::Drenched | rain_core::surface::SurfaceState::Puddle)
+        )
+    });
     let Some(weather) = state else {
         surface.wet = false;
         surface.by_hand = WaterByHand::default();
+        (surface.state, surface.artist) = (Vec4::ZERO, Vec4::ZERO);
+        surface.placed = puddles || placed_water(Vec4::ZERO, painted.iter(), noises.iter());
         return;
     };
     // Soils stay damp for days; what is shown is the class below.
@@ -103,9 +112,66 @@ pub(super) fn follow_weather(
         artist.puddles as f32,
         f32::from(u8::from(weather.mode() == WeatherMode::Artist)),
     );
+    surface.placed = puddles || placed_water(surface.artist, painted.iter(), noises.iter());
     let wind = weather.conditions().wind_m_s;
     surface.wind_m_s = Vec2::new(wind.x as f32, wind.z as f32);
     let seconds = clock.now_s() + f64::from(clock.interpolation()) * clock.tick_ns() as f64 / 1e9;
     surface.time_s = (seconds % WAVE_PERIOD_S) as f32;
     surface.seconds = seconds;
+}
+
+/// Whether any puddle that an artist has placed may hold water.
+fn placed_water<'a>(
+    artist: Vec4,
+    paints: impl Iterator<Item = &'a PuddlePaint>,
+    mut noises: impl Iterator<Item = &'a NoisePuddles>,
+) -> bool {
+    let (holes, puddles) = (artist.y, artist.z);
+    let mut painted = paints
+        .filter(|p| p.validated().is_ok())
+        .map(|p| p.fixed || puddles.max(p.least_flood) > 0.0 || (p.height_map && holes > 0.0));
+    painted.any(|water| water) || noises.any(|noise| noise.validated().is_ok() && noise.level.unwrap_or(puddles) > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::slice::from_ref;
+
+    use super::*;
+
+    #[test]
+    fn placed_puddles_hold_water_by_their_levels() {
+        let water = |artist: Vec4, paint: &[PuddlePaint], noise: &[NoisePuddles]| {
+            placed_water(artist, paint.iter(), noise.iter())
+        };
+        let (dry, wet) = (Vec4::ZERO, Vec4::new(1.0, 0.0, 0.2, 1.0));
+        let paint = PuddlePaint::default();
+        assert!(!water(wet, &[], &[]), "none placed");
+        assert!(!water(dry, from_ref(&paint), &[NoisePuddles::default()]));
+        assert!(water(wet, from_ref(&paint), &[]) && water(wet, &[], &[NoisePuddles::default()]));
+        let holes = Vec4::new(1.0, 0.1, 0.0, 1.0);
+        assert!(water(holes, from_ref(&paint), &[]));
+        let plain = PuddlePaint {
+            height_map: false,
+            ..paint.clone()
+        };
+        assert!(!water(holes, from_ref(&plain), &[]));
+        for paint in [
+            PuddlePaint {
+                fixed: true,
+                ..plain.clone()
+            },
+            PuddlePaint {
+                least_flood: 0.1,
+                ..plain
+            },
+        ] {
+            assert!(water(dry, &[paint], &[]));
+        }
+        let level = |level: f32| NoisePuddles {
+            level: Some(level),
+            ..default()
+        };
+        assert!(water(dry, &[], &[level(0.3)]) && !water(wet, &[], &[level(0.0)]));
+    }
 }

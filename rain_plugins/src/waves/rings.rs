@@ -11,7 +11,7 @@ use super::{Handover, WaveWaterSettings};
 use crate::rainfall::RainView;
 use crate::render_adapter::{WetMaterial, slope_image};
 use crate::report::{PassName, RainReport, SkipReason};
-use crate::surface::{NoisePuddles, PuddlePaint, SurfaceState, WaterAppearance, WaterImages, WaterLevels};
+use crate::surface::{SurfaceState, WaterAppearance, WaterImages, WaterLevels};
 
 /// Where rings come from. Both make a tile of slopes that repeats over the world.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -163,17 +163,6 @@ pub(super) fn seen_ns(clock: &RainClock) -> u64 {
 /// Units: ns.
 pub(super) const FORGOTTEN_NS: u64 = 30_000_000_000;
 
-/// Whether any puddle that an artist has placed may hold water.
-fn placed_water<'a>(
-    artist: Vec4,
-    paints: impl Iterator<Item = &'a PuddlePaint>,
-    mut noises: impl Iterator<Item = &'a NoisePuddles>,
-) -> bool {
-    let (holes, puddles) = (artist.y, artist.z);
-    let mut painted = paints.map(|p| p.fixed || puddles.max(p.least_flood) > 0.0 || (p.height_map && holes > 0.0));
-    painted.any(|water| water) || noises.any(|noise| noise.level.unwrap_or(puddles) > 0.0)
-}
-
 /// Lets the present rain make its rings.
 pub(super) fn rain_on_water(
     mut rings: ResMut<RainRings>,
@@ -185,8 +174,6 @@ pub(super) fn rain_on_water(
     settings: Res<WaveWaterSettings>,
     report: Res<RainReport>,
     views: Query<&Camera, With<RainView>>,
-    paints: Query<&PuddlePaint>,
-    noises: Query<&NoisePuddles>,
 ) {
     let rings = &mut *rings;
     rings.off = settings.no_rings;
@@ -203,7 +190,6 @@ pub(super) fn rain_on_water(
         rings.tile.reset();
     }
     let seen = views.iter().any(|c| c.is_active);
-    let artist = surface.as_ref().map_or(Vec4::ZERO, |s| s.artist);
     let reason = if !seen {
         Some(SkipReason::NoView)
     } else if rings.off || appearance.is_some_and(|a| a.ripple_strength <= 0.0) {
@@ -212,10 +198,7 @@ pub(super) fn rain_on_water(
         Some(SkipReason::Dry)
     } else if !field.is_raining() && rings.is_idle() {
         Some(SkipReason::NoRain)
-    } else if !levels.is_some_and(|l| l.any_water())
-        && !surface.as_ref().is_some_and(|s| s.placed)
-        && !placed_water(artist, paints.iter(), noises.iter())
-    {
+    } else if !levels.is_some_and(|l| l.any_water()) && !surface.as_ref().is_some_and(|s| s.placed) {
         Some(SkipReason::NoWater)
     } else {
         None
@@ -242,48 +225,5 @@ pub(super) fn rain_on_water(
         } else {
             report.skipped(PassName::Ripples, SkipReason::NothingMoved);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::slice::from_ref;
-
-    use super::*;
-
-    #[test]
-    fn placed_puddles_hold_water_by_their_levels() {
-        let water = |artist: Vec4, paint: &[PuddlePaint], noise: &[NoisePuddles]| {
-            placed_water(artist, paint.iter(), noise.iter())
-        };
-        let (dry, wet) = (Vec4::ZERO, Vec4::new(1.0, 0.0, 0.2, 1.0));
-        let paint = PuddlePaint::default();
-        assert!(!water(wet, &[], &[]), "none placed");
-        assert!(!water(dry, from_ref(&paint), &[NoisePuddles::default()]));
-        assert!(water(wet, from_ref(&paint), &[]) && water(wet, &[], &[NoisePuddles::default()]));
-        let holes = Vec4::new(1.0, 0.1, 0.0, 1.0);
-        assert!(water(holes, from_ref(&paint), &[]));
-        let plain = PuddlePaint {
-            height_map: false,
-            ..paint.clone()
-        };
-        assert!(!water(holes, from_ref(&plain), &[]));
-        for paint in [
-            PuddlePaint {
-                fixed: true,
-                ..plain.clone()
-            },
-            PuddlePaint {
-                least_flood: 0.1,
-                ..plain
-            },
-        ] {
-            assert!(water(dry, &[paint], &[]));
-        }
-        let level = |level: f32| NoisePuddles {
-            level: Some(level),
-            ..default()
-        };
-        assert!(water(dry, &[], &[level(0.3)]) && !water(wet, &[], &[level(0.0)]));
     }
 }

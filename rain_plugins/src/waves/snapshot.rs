@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use bevy::prelude::*;
 use rain_ecs::snapshot::{Apply, SnapshotError, SnapshotPart};
-use rain_render::waves::SavedWaves;
+use rain_render::waves::{SavedWaves, SavedWavesError};
 use serde::{Deserialize, Serialize};
 
 use super::disturb::DisturberMotion;
@@ -99,9 +99,10 @@ impl SnapshotPart for WavesPart {
     }
 
     fn prepare(self, world: &World) -> Result<Apply, SnapshotError> {
-        let waves = world
-            .get_resource::<PuddleWaves>()
-            .ok_or(SnapshotError::NoPlugin { part: PART })?;
+        // No tile yet, or none at all: nobody sees waves here.
+        let Some(waves) = world.get_resource::<PuddleWaves>() else {
+            return Ok(Box::new(|_| ()));
+        };
         let water = self.water;
         let [now, before] = &water.heights_m;
         let saved = SavedWaves {
@@ -114,7 +115,17 @@ impl SnapshotPart for WavesPart {
             heights_m: [numbers(now)?, numbers(before)?],
         };
         let mut tile = waves.tile().clone();
-        tile.restore(&saved).map_err(|error| refused(error.to_string()))?;
+        match tile.restore(&saved) {
+            Ok(()) => {}
+            // Another tile than this app's is not wrong, only of no use here.
+            Err(error @ SavedWavesError::Cells { .. }) => {
+                return Ok(Box::new(move |world| {
+                    warn!("the snapshot's waves are left out: {error}");
+                    Self::absent(world);
+                }));
+            }
+            Err(error) => return Err(refused(error.to_string())),
+        }
         let eye = self.eye.map(Vec3::from);
         let places = self.motions.iter().filter_map(|motion| motion.before).chain(eye);
         if let Some(place) = places.into_iter().find(|place| !place.is_finite()) {

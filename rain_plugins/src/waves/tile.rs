@@ -128,8 +128,11 @@ pub(super) fn move_water(
             found.extend(disturbance);
         }
     }
-    let room = if waves.off { 0 } else { MAX_DISTURBANCES - found.len() };
-    found.extend(splashes.read().map(foot_fall).take(room));
+    if waves.off {
+        // Not to be made up for when it is switched on.
+        splashes.clear();
+    }
+    found.extend(splashes.read().map(foot_fall).take(MAX_DISTURBANCES - found.len()));
     let view = leading_view(views);
     let reason = match view {
         None => Some(SkipReason::NoView),

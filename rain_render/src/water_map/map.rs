@@ -132,7 +132,11 @@ impl WaterMap {
             number as f64,
             "as many as the place says",
         )?;
-        if self.ground.is_none_or(|old| old.build != place.build) {
+        let knows = |old: &GroundPlace| {
+            // Texels beside the old cells are empty, not dry: where cells come in under them they start anew.
+            old.build == place.build && (old.covers_as(place) || self.lies_inside(old))
+        };
+        if !self.ground.as_ref().is_some_and(knows) {
             self.forget();
         }
         self.ground = Some(*place);
@@ -146,6 +150,20 @@ impl WaterMap {
         }
         self.cells_sent = false;
         Ok(())
+    }
+
+    /// Whether all held texels lie over cells of a place.
+    fn lies_inside(&self, ground: &GroundPlace) -> bool {
+        let Some(held) = self.held else { return true };
+        let n = f64::from(self.settings.texels);
+        (0..self.settings.levels as usize).all(|level| {
+            let texel = self.settings.level_cell_m(level);
+            (0..2).all(|axis| {
+                let (low, high) = (held[level][axis] as f64 * texel, (held[level][axis] as f64 + n) * texel);
+                let end = ground.corner_m[axis] + f64::from(ground.cells[axis]) * ground.cell_m;
+                low >= ground.corner_m[axis] && high <= end
+            })
+        })
     }
 
     /// There is no ground any more.

@@ -110,6 +110,11 @@ pub struct GroundPlace {
 }
 
 impl GroundPlace {
+    /// Whether another place has its cells where this one has them.
+    pub(super) fn covers_as(&self, other: &Self) -> bool {
+        (self.corner_m, self.cell_m, self.cells) == (other.corner_m, other.cell_m, other.cells)
+    }
+
     /// # Errors
     /// For numbers that are not finite or too large, and for no cells.
     pub(super) fn check(&self) -> Result<(), ConfigError> {

@@ -132,6 +132,72 @@ fn each_view_has_a_mirror_of_its_own_at_its_own_height() {
     assert!(off.share == 0.0, "{off:?}");
 }
 
+/// A bright column beside the first plate.
+fn column(test: &mut TestApp, z: f32, colour: [f32; 3]) {
+    let world = test.world();
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
+        base_color: Color::BLACK,
+        emissive: LinearRgba::rgb(colour[0], colour[1], colour[2]) * 3_000.0,
+        ..default()
+    });
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::new(0.6, 2.0, 0.6));
+    let at = Transform::from_xyz(0.0, 1.0, z);
+    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at, KeepDry));
+}
+
+#[test]
+fn puddles_that_need_no_weather_mirror_and_views_back_to_back_have_a_mirror_each() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = ponds();
+    column(&mut test, 2.5, [0.1, 0.9, 0.1]);
+    let weather = test
+        .world()
+        .query_filtered::<Entity, With<Weather>>()
+        .single(test.world())
+        .expect("one weather");
+    test.world().despawn(weather);
+    let camera = test.camera;
+    let from = |z: f32| Transform::from_xyz(0.0, 0.8, 0.0).looking_at(Vec3::new(0.0, 0.0, z), Vec3::Y);
+    test.world().entity_mut(camera).insert(from(1.4));
+    test.frames(4, FRAME);
+    let plain = test.picture();
+    let mirror = PlanarReflection { height_m: Some(0.0) };
+    test.world().entity_mut(camera).insert(mirror);
+    test.frames(4, FRAME);
+    test.reset();
+    test.frames(4, FRAME);
+    assert_eq!(test.recorded(PassName::Reflection), 4, "no weather, and a puddle");
+    let own = test.picture();
+    let mirrored = difference(&own, &plain);
+    assert!(mirrored.share > 0.03, "{mirrored:?}");
+    // A view the other way, before it in order.
+    let target = target_image(&mut test.app, SIZE);
+    let other = spawn_camera(&mut test.app, &target, true);
+    surfaces_only(&mut test, other);
+    test.world().entity_mut(other).insert((from(-1.4), mirror));
+    test.world().get_mut::<Camera>(other).expect("a camera").order = -1;
+    test.frames(4, FRAME);
+    let off = difference(&test.picture(), &own);
+    assert!(off.mean < 0.1 * mirrored.mean, "{off:?}, mirrored {mirrored:?}");
+    // Where the puddle does not fill, there is nothing to mirror.
+    let mut noises = test.world().query::<&mut NoisePuddles>();
+    for mut noise in noises.iter_mut(test.world()) {
+        noise.level = Some(0.0);
+    }
+    test.frames(2, FRAME);
+    test.reset();
+    test.frames(2, FRAME);
+    assert_eq!(
+        (
+            test.recorded(PassName::Reflection),
+            test.skipped(PassName::Reflection, SkipReason::Dry)
+        ),
+        (0, 4)
+    );
+}
+
 #[test]
 fn at_most_four_mirrors_are_drawn_and_none_where_nobody_asks() {
     if !gpu::available() {

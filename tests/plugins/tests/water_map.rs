@@ -6,8 +6,10 @@ use bevy::prelude::*;
 use image::RgbImage;
 use rain_plugins::prelude::*;
 use rain_plugins::surface::GroundMap;
-use test_support::app::{FRAME, TestApp};
+use test_support::app::{FRAME, TestApp, spawn_camera, target_image};
 use test_support::{gpu, world};
+
+use crate::scenes::difference;
 
 /// Side of the picture, and its pixels per metre of ground. Units: px, px/m.
 const SIZE: u32 = 128;
@@ -216,4 +218,76 @@ fn the_map_is_recorded_when_something_changes_and_says_why_not_otherwise() {
     test.reset();
     test.frames(10, FRAME);
     assert_eq!(test.skipped(PassName::WaterMap, SkipReason::Disabled), 10);
+    // What is set by hand is not the ground's either: the map forgets, and starts anew from the ground afterwards.
+    test.world().entity_mut(weather).insert(WeatherMode::Physical);
+    test.frames(4, FRAME);
+    assert!(test.world().resource::<GroundMap>().map().is_shown());
+    let by_hand = WaterByHand {
+        wetness: None,
+        water_level: Some(1.0),
+    };
+    test.world().entity_mut(weather).insert(by_hand);
+    test.frames(2, FRAME);
+    test.reset();
+    test.frames(10, FRAME);
+    assert_eq!(test.skipped(PassName::WaterMap, SkipReason::Disabled), 10);
+    assert!(!test.world().resource::<GroundMap>().map().is_shown());
+    test.world().entity_mut(weather).remove::<WaterByHand>();
+    test.frames(4, FRAME);
+    assert!(test.world().resource::<GroundMap>().map().is_shown());
+}
+
+/// Whether the finest level holds a place.
+fn finest(test: &TestApp, x: f64) -> bool {
+    test.app
+        .world()
+        .resource::<GroundMap>()
+        .map()
+        .texel_at(0, [x, 0.0])
+        .is_some()
+}
+
+#[test]
+fn the_map_lies_amid_views_or_around_the_leading_one() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, weather) = from_above(true);
+    rain(&mut test, weather, 20.0, 60);
+    assert!(finest(&test, 12.0) && !finest(&test, 24.0));
+    // A second view 20 m away: both have fine texels around them.
+    let target = target_image(&mut test.app, [SIZE, SIZE]);
+    let second = spawn_camera(&mut test.app, &target, true);
+    let above = |x: f32| Transform::from_xyz(x, 16.0, 0.0).looking_at(Vec3::X * x, Vec3::NEG_Z);
+    test.world().entity_mut(second).insert(above(20.0));
+    test.frames(3, FRAME);
+    assert!(finest(&test, 1.0) && finest(&test, 19.0) && !finest(&test, -12.0));
+    // Too far away: it is the leading view's, whichever was made first.
+    test.world().entity_mut(second).insert(above(40.0));
+    test.frames(3, FRAME);
+    assert!(finest(&test, 1.0) && !finest(&test, 39.0));
+    test.world().get_mut::<Camera>(second).expect("a camera").order = -1;
+    test.frames(3, FRAME);
+    assert!(!finest(&test, 1.0) && finest(&test, 39.0));
+}
+
+#[test]
+fn another_weather_brings_none_of_its_own_rain_with_it() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, weather) = from_above(true);
+    rain(&mut test, weather, 60.0, 1200);
+    let other = test.world().spawn(humid(0.0)).id();
+    test.world().entity_mut(weather).remove::<Weather>();
+    test.frames(4, FRAME);
+    rain(&mut test, other, 0.0, 3600);
+    let before = test.picture();
+    // Back to the one that has seen 20 mm.
+    test.world().entity_mut(other).remove::<Weather>();
+    test.world().entity_mut(weather).insert(humid(0.0));
+    test.frames(4, FRAME);
+    let after = test.picture();
+    let found = difference(&before, &after);
+    assert!(found.share == 0.0 && found.mean < 0.2, "{found:?}");
 }

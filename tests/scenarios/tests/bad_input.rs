@@ -169,6 +169,14 @@ fn missing_and_broken_models_are_refused_by_name() {
 }
 
 #[test]
+fn a_drain_beside_the_scene_is_refused_by_its_place() {
+    let text = GOOD.replacen('(', "(scene: \"car.glb\", drains: [(position: (500, 0))], ", 1);
+    let (folder, _) = assets::street_folder();
+    let car = std::fs::read(folder.join(street::CAR_FILE)).expect("the car");
+    Input::new(&text).file("car.glb", &car).refused(&["ground", "500"]);
+}
+
+#[test]
 fn settings_beside_the_scenario_are_checked_as_well() {
     let input = Input::new(GOOD);
     input.refused_with(&["size", "0"], |o| o.size = Some([0, 0]));

@@ -203,7 +203,8 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 
     // Standing water bends the view of its bottom.
     let level = smoothstep(0.85, 0.95, face.y);
-    var depth = rain_standing_water(rain_level_map, rain_surface.levels, p) * select(0.0, 1.0, level > 0.0);
+    let standing = rain_standing_water(rain_level_map, rain_surface.levels, p) * select(0.0, 1.0, level > 0.0);
+    var depth = standing;
     var paint = vec4<f32>(1.0);
     // Height of the material's relief, 1 at its top.
     var height = 0.0;
@@ -245,8 +246,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     if (exposure > 0.0 && (depth > 0.0 || (memory < 1.0 && wetting.take.z < 0.5))) {
         exposure *= rain_exposure(rain_cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal));
     }
-    let shore = rain_puddle_rim(depth);
-    var puddle = level * wetting.take.x * max(select(shore, 0.0, depth <= placed.depth), placed.water);
+    var puddle = level * wetting.take.x * max(rain_puddle_rim(standing), placed.water);
     // Wetness of the pores and share under a film.
     var wet = vec2<f32>(rain_point_wetness(rain_surface.state, exposure), rain_point_film(rain_surface.state, exposure));
     wet = mix(wet, ground.xy * wetting.take.x * placed.wettable, memory);
@@ -330,7 +330,8 @@ fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughne
     var layer = 0;
     for (; layer < 4; layer++) {
         let eye = rain_surface.mirrors[layer].eye;
-        if (eye.w > 0.0 && distance(eye.xyz, view.world_position) < 0.01) {
+        let looks_there = dot(rain_surface.mirrors[layer].plane.yzw, view.world_from_view[2].xyz) < -0.9999;
+        if (eye.w > 0.0 && distance(eye.xyz, view.world_position) < 0.01 && looks_there) {
             break;
         }
     }
