@@ -11,7 +11,7 @@ use rain_render::water_map::{
 use super::ground::LevelsFromGround;
 use super::state::SurfaceState;
 use super::water::WaterLevels;
-use crate::rainfall::RainView;
+use crate::rainfall::{RainView, leading_view};
 use crate::report::{PassName, RainReport, SkipReason};
 
 /// Unseen for longer than this while it rained: what happened meanwhile is the ground's to tell. Units: ns.
@@ -42,7 +42,7 @@ pub(crate) struct MapHandover {
     pub wanted: bool,
 }
 
-/// The water map around the first active view. It shows what the simulation's ground knows and adds what is only seen:
+/// The water map amid all active views if they fit, else around the leading one. It shows what the simulation's ground knows and adds what is only seen:
 /// it is no state, starts anew from the ground where the view comes to, and after a rewind or a restored snapshot.
 #[derive(Resource, Debug)]
 pub struct GroundMap {
@@ -109,7 +109,8 @@ pub(super) fn follow_map(
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
     mut presses: Option<ResMut<FilmPresses>>,
-    views: Query<(&Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    mut eyes: Local<Vec<[f64; 2]>>,
 ) {
     let this = map.bypass_change_detection();
     this.handover.wanted = false;
@@ -126,8 +127,8 @@ pub(super) fn follow_map(
         let _ = this.map.press(&press);
     }
     let skip = |reason| report.skipped(PassName::WaterMap, reason);
-    let eye = views.iter().find(|(c, _)| c.is_active).map(|(_, t)| t.translation());
-    let Some(eye) = eye else {
+    let place = |at: &GlobalTransform| [at.translation().x, at.translation().z].map(f64::from);
+    let Some(leading) = leading_view(views).map(place) else {
         skip(SkipReason::NoView);
         return;
     };
@@ -173,7 +174,10 @@ pub(super) fn follow_map(
         }
     }
     this.ground = Some(ground_now);
-    this.map.follow([eye.x, eye.z].map(f64::from));
+    eyes.clear();
+    let active = views.iter().filter(|(_, camera, _)| camera.is_active);
+    eyes.extend(active.map(|(_, _, at)| place(at)));
+    this.map.follow(leading, &eyes);
     let time_s = now.0.saturating_sub(before_ns) as f64 * 1e-9;
     let evaporation_mm = state.evaporation_mm_h().max(0.0) * time_s / 3600.0;
     // The weather has been validated before it became state.

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use image::RgbImage;
 use rain_plugins::prelude::*;
 use rain_plugins::surface::GroundMap;
-use test_support::app::{FRAME, TestApp};
+use test_support::app::{FRAME, TestApp, spawn_camera, target_image};
 use test_support::{gpu, world};
 
 /// Side of the picture, and its pixels per metre of ground. Units: px, px/m.
@@ -101,6 +101,46 @@ fn a_truck_that_leaves_uncovers_a_dry_patch_that_stays_until_it_rains_on_it() {
         without.iter().all(|d| *d < 0.2 * with[0]),
         "without the map: {without:?}"
     );
+}
+
+#[test]
+fn a_dry_patch_is_seen_by_a_second_view_that_is_near_the_first_and_not_by_one_far_from_it() {
+    if !gpu::available() {
+        return;
+    }
+    // The second view stays where it is, five metres from the patch, which lies 24 or 29 m from the first.
+    let patch = |first: f32| {
+        let (mut test, weather) = from_above(true);
+        test.look(Vec3::new(first, 16.0, 0.0), Vec3::new(first, 0.0, 0.0));
+        let target = target_image(&mut test.app, [SIZE, SIZE]);
+        let second = spawn_camera(&mut test.app, &target, true);
+        let view = RainView {
+            streak_budget: Some(0),
+            ..default()
+        };
+        let over = Transform::from_xyz(19.0, 16.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
+        test.world().entity_mut(second).insert((view, over));
+        let truck = world::block(
+            test.world(),
+            "truck",
+            Vec3::new(22.5, 0.6, -1.5),
+            Vec3::new(25.5, 2.6, 1.5),
+            world::STONE,
+        );
+        test.world().entity_mut(truck).insert(MovesInRain);
+        test.frames(4, FRAME);
+        rain(&mut test, weather, 20.0, 60);
+        test.world().despawn(truck);
+        test.frames(4, FRAME);
+        rain(&mut test, weather, 0.0, 1);
+        let place = test.world().resource::<GroundMap>().map().place();
+        let picture = test.picture_of(&target);
+        let dark = brightness(&picture, 5.0, 0.0) - brightness(&picture, 5.0, 4.0);
+        (dark.abs(), place.seen_from([f64::from(first), 0.0]).middle_centre[0])
+    };
+    let (near, far) = (patch(0.0), patch(-5.0));
+    assert_eq!((near.1, far.1), (9.5, 0.0), "amid both, then around the first");
+    assert!(near.0 > 10.0 && far.0 < 0.2 * near.0, "{near:?}, then {far:?}");
 }
 
 #[test]
