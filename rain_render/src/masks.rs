@@ -4,6 +4,7 @@
 
 use glam::{Mat4, Vec2};
 
+use crate::bindings::texture_entry;
 use crate::compose;
 use crate::gpu_types::{MaskView, SurfaceParams};
 
@@ -19,6 +20,7 @@ pub struct MaskGpu {
     sampler: wgpu::Sampler,
     /// Stands for a ground that is not there.
     nothing: wgpu::TextureView,
+    no_map: wgpu::TextureView,
 }
 
 /// What the mask pass reads of the ground; without one, the weather and the cover alone tell what is wet.
@@ -28,6 +30,8 @@ pub struct GroundMaps<'a> {
     pub films: &'a wgpu::TextureView,
     /// Levels of standing water (R32Float), see `rain_standing_water`.
     pub levels: &'a wgpu::TextureView,
+    /// The water map, all levels; it counts where `SurfaceParams::map` says that it holds.
+    pub map: &'a wgpu::TextureView,
 }
 
 /// Targets of the mask pass.
@@ -39,6 +43,20 @@ pub struct MaskTargets<'a> {
     pub depth: &'a wgpu::TextureView,
     /// Depth of standing water. Units: m.
     pub water: &'a wgpu::TextureView,
+}
+
+/// A texel for a texture that is bound and never counts.
+fn empty(device: &wgpu::Device) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("rain masks: no ground"),
+        size: wgpu::Extent3d::default(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
 }
 
 impl MaskGpu {
@@ -55,16 +73,16 @@ impl MaskGpu {
             },
             count: None,
         };
-        let colour = |binding, filterable| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
+        let fragment = wgpu::ShaderStages::FRAGMENT;
+        let colour = |binding, filterable, dimension| {
+            texture_entry(
+                binding,
+                fragment,
+                wgpu::TextureSampleType::Float { filterable },
+                dimension,
+            )
         };
+        let plane = wgpu::TextureViewDimension::D2;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain masks"),
             entries: &[
@@ -80,14 +98,15 @@ impl MaskGpu {
                 },
                 depth(1),
                 depth(2),
-                colour(3, true),
+                colour(3, true, plane),
                 wgpu::BindGroupLayoutEntry {
                     binding: 4,
                     visibility: wgpu::ShaderStages::FRAGMENT,
                     ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                     count: None,
                 },
-                colour(5, false),
+                colour(5, false, plane),
+                colour(6, true, wgpu::TextureViewDimension::D2Array),
             ],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -133,22 +152,17 @@ impl MaskGpu {
             }),
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("rain masks"),
+                address_mode_u: wgpu::AddressMode::Repeat,
+                address_mode_v: wgpu::AddressMode::Repeat,
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 ..Default::default()
             }),
-            nothing: device
-                .create_texture(&wgpu::TextureDescriptor {
-                    label: Some("rain masks: no ground"),
-                    size: wgpu::Extent3d::default(),
-                    mip_level_count: 1,
-                    sample_count: 1,
-                    dimension: wgpu::TextureDimension::D2,
-                    format: wgpu::TextureFormat::Rgba16Float,
-                    usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                    view_formats: &[],
-                })
-                .create_view(&wgpu::TextureViewDescriptor::default()),
+            nothing: empty(device).create_view(&wgpu::TextureViewDescriptor::default()),
+            no_map: empty(device).create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            }),
         }
     }
 
@@ -174,7 +188,11 @@ impl MaskGpu {
             surface,
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&view));
-        let (films, levels) = ground.map_or((&self.nothing, &self.nothing), |g| (g.films, g.levels));
+        let maps = ground.unwrap_or(GroundMaps {
+            films: &self.nothing,
+            levels: &self.nothing,
+            map: &self.no_map,
+        });
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain masks"),
@@ -183,9 +201,10 @@ impl MaskGpu {
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(scene_depth)),
                 entry(2, wgpu::BindingResource::TextureView(cover)),
-                entry(3, wgpu::BindingResource::TextureView(films)),
+                entry(3, wgpu::BindingResource::TextureView(maps.films)),
                 entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
-                entry(5, wgpu::BindingResource::TextureView(levels)),
+                entry(5, wgpu::BindingResource::TextureView(maps.levels)),
+                entry(6, wgpu::BindingResource::TextureView(maps.map)),
             ],
         })
     }

@@ -6,6 +6,7 @@
 @group(0) @binding(3) var film_map: texture_2d<f32>;
 @group(0) @binding(4) var film_sampler: sampler;
 @group(0) @binding(5) var level_map: texture_2d<f32>;
+@group(0) @binding(6) var near_map: texture_2d_array<f32>;
 
 struct Masks {
     @location(0) wet: vec4<f32>,
@@ -57,7 +58,11 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     // As the wet material shows it: the weather's wetness where the rain reaches, what the ground remembers on it, and
     // all soaked under a puddle.
     let films = rain_film_texel(film_map, film_sampler, view.surface.levels, p);
-    let ground = rain_memory_of(view.surface.levels, p, films);
+    var ground = vec3<f32>(0.0);
+    if (films.w > 0.0) {
+        let near = rain_water_map(near_map, film_sampler, view.surface.map, p.xz, films);
+        ground = rain_memory_of(view.surface.levels, p, near);
+    }
     let wet = mix(rain_point_wetness(view.surface.state, exposure), ground.x, rain_memory_share(ground.z, normal.y));
     let depth_of_water = rain_standing_water(level_map, view.surface.levels, p);
     let puddle = rain_puddle_rim(depth_of_water) * smoothstep(0.85, 0.95, normal.y);
