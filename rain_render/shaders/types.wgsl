@@ -138,11 +138,15 @@ struct ReflectionParams {
 }
 
 // Where the levels of the water map lie. Of each: x, y: the eye's place in the map in sides, z: 1 / side, 1/m, w: how far
-// from the eye it holds, m; 0: not at all.
+// from its centre it holds, m; 0: not at all. Centres: x, z from the eye, m.
 struct WaterMapPlaces {
     fine: vec4<f32>,
     middle: vec4<f32>,
     coarse: vec4<f32>,
+    fine_centre: vec2<f32>,
+    middle_centre: vec2<f32>,
+    coarse_centre: vec2<f32>,
+    pad: vec2<f32>,
 }
 
 // What the wet look and the wet mask read.

@@ -114,6 +114,10 @@ pub struct WaterMapPlaces {
     pub fine: [f32; 4],
     pub middle: [f32; 4],
     pub coarse: [f32; 4],
+    pub fine_centre: [f32; 2],
+    pub middle_centre: [f32; 2],
+    pub coarse_centre: [f32; 2],
+    pub pad: [f32; 2],
 }
 
 /// What the wet look and the wet mask read.
@@ -302,7 +306,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
         layout!(WaterLook: absorption, mud, ambient, ripples, waves, place, map, more_map),
         layout!(ReflectionParams: clip_from_eye, eye, plane),
-        layout!(WaterMapPlaces: fine, middle, coarse),
+        layout!(WaterMapPlaces: fine, middle, coarse, fine_centre, middle_centre, coarse_centre, pad),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors, map),
         layout!(MaskView: eye_from_clip, screen, surface),
         layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant_squared, g, keep, inverse_keep,

@@ -4,6 +4,7 @@
 
 use glam::{Mat4, Vec2};
 
+use crate::bindings::texture_entry;
 use crate::compose;
 use crate::gpu_types::{MaskView, SurfaceParams};
 
@@ -19,7 +20,7 @@ pub struct MaskGpu {
     sampler: wgpu::Sampler,
     /// Stands for a ground that is not there.
     nothing: wgpu::TextureView,
-    nothing_near: wgpu::TextureView,
+    no_map: wgpu::TextureView,
 }
 
 /// What the mask pass reads of the ground; without one, the weather and the cover alone tell what is wet.
@@ -29,8 +30,8 @@ pub struct GroundMaps<'a> {
     pub films: &'a wgpu::TextureView,
     /// Levels of standing water (R32Float), see `rain_standing_water`.
     pub levels: &'a wgpu::TextureView,
-    /// The finer films and pores near the view (Rgba16Float, an array), see `rain_water_map`.
-    pub near: &'a wgpu::TextureView,
+    /// The water map, all levels; it counts where `SurfaceParams::map` says that it holds.
+    pub map: &'a wgpu::TextureView,
 }
 
 /// Targets of the mask pass.
@@ -42,6 +43,20 @@ pub struct MaskTargets<'a> {
     pub depth: &'a wgpu::TextureView,
     /// Depth of standing water. Units: m.
     pub water: &'a wgpu::TextureView,
+}
+
+/// A texel for a texture that is bound and never counts.
+fn empty(device: &wgpu::Device) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("rain masks: no ground"),
+        size: wgpu::Extent3d::default(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
 }
 
 impl MaskGpu {
@@ -58,16 +73,16 @@ impl MaskGpu {
             },
             count: None,
         };
-        let colour = |binding, filterable, view_dimension| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable },
-                view_dimension,
-                multisampled: false,
-            },
-            count: None,
+        let fragment = wgpu::ShaderStages::FRAGMENT;
+        let colour = |binding, filterable, dimension| {
+            texture_entry(
+                binding,
+                fragment,
+                wgpu::TextureSampleType::Float { filterable },
+                dimension,
+            )
         };
+        let plane = wgpu::TextureViewDimension::D2;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain masks"),
             entries: &[
@@ -83,14 +98,14 @@ impl MaskGpu {
                 },
                 depth(1),
                 depth(2),
-                colour(3, true, wgpu::TextureViewDimension::D2),
+                colour(3, true, plane),
                 wgpu::BindGroupLayoutEntry {
                     binding: 4,
                     visibility: wgpu::ShaderStages::FRAGMENT,
                     ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                     count: None,
                 },
-                colour(5, false, wgpu::TextureViewDimension::D2),
+                colour(5, false, plane),
                 colour(6, true, wgpu::TextureViewDimension::D2Array),
             ],
         });
@@ -126,16 +141,6 @@ impl MaskGpu {
             multiview_mask: None,
             cache: None,
         });
-        let nothing = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("rain masks: no ground"),
-            size: wgpu::Extent3d::default(),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba16Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
         Self {
             layout,
             pipeline,
@@ -147,15 +152,14 @@ impl MaskGpu {
             }),
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("rain masks"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                // The near map's texels lie where its place repeats.
                 address_mode_u: wgpu::AddressMode::Repeat,
                 address_mode_v: wgpu::AddressMode::Repeat,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
                 ..Default::default()
             }),
-            nothing: nothing.create_view(&wgpu::TextureViewDescriptor::default()),
-            nothing_near: nothing.create_view(&wgpu::TextureViewDescriptor {
+            nothing: empty(device).create_view(&wgpu::TextureViewDescriptor::default()),
+            no_map: empty(device).create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2Array),
                 ..Default::default()
             }),
@@ -184,8 +188,11 @@ impl MaskGpu {
             surface,
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&view));
-        let without = (&self.nothing, &self.nothing, &self.nothing_near);
-        let (films, levels, near) = ground.map_or(without, |g| (g.films, g.levels, g.near));
+        let maps = ground.unwrap_or(GroundMaps {
+            films: &self.nothing,
+            levels: &self.nothing,
+            map: &self.no_map,
+        });
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain masks"),
@@ -194,10 +201,10 @@ impl MaskGpu {
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(scene_depth)),
                 entry(2, wgpu::BindingResource::TextureView(cover)),
-                entry(3, wgpu::BindingResource::TextureView(films)),
+                entry(3, wgpu::BindingResource::TextureView(maps.films)),
                 entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
-                entry(5, wgpu::BindingResource::TextureView(levels)),
-                entry(6, wgpu::BindingResource::TextureView(near)),
+                entry(5, wgpu::BindingResource::TextureView(maps.levels)),
+                entry(6, wgpu::BindingResource::TextureView(maps.map)),
             ],
         })
     }

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::air::{AirAroundView, Surroundings, judge_air};
 use super::projection::ShearedProjection;
-use crate::rainfall::{RainView, amid_eyes, leading_view};
+use crate::rainfall::{RainView, leading_view};
 use crate::render_adapter::{RenderApp, cover_camera, cover_image};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -232,12 +232,19 @@ struct CoverCamera {
 /// The place around which the map is drawn: amid all eyes if none is farther than `reach` from there, else that of the
 /// leading one; the others then see open sky beyond the map.
 fn centre_of(lead: DVec3, eyes: impl IntoIterator<Item = DVec3>, reach: f64) -> DVec3 {
-    amid_eyes(lead, eyes, reach).unwrap_or_else(|apart| {
+    let (low, high) = eyes
+        .into_iter()
+        .filter(|eye| eye.is_finite())
+        .fold((lead, lead), |(low, high), eye| (low.min(eye), high.max(eye)));
+    let apart = (high - low).xz().max_element();
+    if apart <= 2.0 * reach {
+        (0.5 * (low + high)).with_y(lead.y)
+    } else {
         warn_once!(
             "views lie {apart:.0} m apart: rain passes through roofs around those that the cover map does not reach"
         );
         lead
-    })
+    }
 }
 
 /// Points the cover camera and decides whether this frame draws it.
@@ -357,4 +364,22 @@ fn aim_view(
         texels: map.texels,
     });
     map.drawn = Some((drawn, slope));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_map_lies_amid_views_that_it_can_hold() {
+        let eye = |x: f64, z: f64| DVec3::new(x, 1.7, z);
+        let lead = eye(0.0, 0.0);
+        assert_eq!(centre_of(lead, [lead], 24.0), lead);
+        assert_eq!(
+            centre_of(lead, [lead, DVec3::new(20.0, 9.0, -8.0)], 24.0),
+            eye(10.0, -4.0)
+        );
+        assert_eq!(centre_of(lead, [lead, eye(0.0, 49.0)], 24.0), lead);
+        assert_eq!(centre_of(lead, [lead, DVec3::NAN], 24.0), lead);
+    }
 }

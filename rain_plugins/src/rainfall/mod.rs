@@ -4,7 +4,7 @@ mod lead;
 mod motion;
 mod view;
 
-pub(crate) use lead::{amid_eyes, leading_view};
+pub(crate) use lead::leading_view;
 pub use motion::ViewMotion;
 pub(crate) use view::SoftwareAdapter;
 pub use view::{MAX_CONTRAST, MAX_STREAK_BUDGET, RainView, RainViewFrame, RainfallPlugin};

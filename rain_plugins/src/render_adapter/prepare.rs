@@ -330,11 +330,12 @@ pub(super) fn prepare_rain(
         .as_ref()
         .filter(|s| s.shown)
         .and_then(|s| s.images)
-        .and_then(|ids| Some((images.get(ids.films)?, images.get(ids.levels)?, images.get(ids.map)?)));
-    let ground_maps = ground_maps.map(|(films, levels, near)| GroundMaps {
-        near: &near.texture_view,
+        .and_then(|ids| Some([ids.films, ids.levels, ids.map].map(|id| images.get(id))))
+        .and_then(|[films, levels, map]| Some((films?, levels?, map?)));
+    let ground_maps = ground_maps.map(|(films, levels, map)| GroundMaps {
         films: &films.texture_view,
         levels: &levels.texture_view,
+        map: &map.texture_view,
     });
     gpu.mask_bind_groups.clear();
     gpu.views.retain(|entity, _| views.contains(*entity));

@@ -11,14 +11,11 @@ use rain_render::water_map::{
 use super::ground::LevelsFromGround;
 use super::state::SurfaceState;
 use super::water::WaterLevels;
-use crate::rainfall::{RainView, amid_eyes, leading_view};
+use crate::rainfall::{RainView, leading_view};
 use crate::report::{PassName, RainReport, SkipReason};
 
 /// Unseen for longer than this while it rained: what happened meanwhile is the ground's to tell. Units: ns.
 const UNSEEN_NS: u64 = 10_000_000_000;
-
-/// Views up to this from the middle of all of them share the finest texels. Units: sides of the finest level.
-const REACH: f64 = 0.375;
 
 /// Settings of the water map. Changes take effect when the app starts.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
@@ -45,8 +42,9 @@ pub(crate) struct MapHandover {
     pub wanted: bool,
 }
 
-/// The water map around the active views, or around the leading one where they lie too far apart. It shows what the simulation's ground knows and adds what is only seen:
-/// it is no state, starts anew from the ground where the view comes to, and after a rewind or a restored snapshot.
+/// The water map amid all active views if they fit, else around the leading one. It shows what the simulation's ground
+/// knows and adds what is only seen: it is no state, starts anew from the ground where the view comes to, and after a
+/// rewind or a restored snapshot.
 #[derive(Resource, Debug)]
 pub struct GroundMap {
     map: WaterMap,
@@ -113,6 +111,7 @@ pub(super) fn follow_map(
     weather: Query<&WeatherState>,
     mut presses: Option<ResMut<FilmPresses>>,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    mut eyes: Local<Vec<[f64; 2]>>,
 ) {
     let this = map.bypass_change_detection();
     this.handover.wanted = false;
@@ -129,16 +128,11 @@ pub(super) fn follow_map(
         let _ = this.map.press(&press);
     }
     let skip = |reason| report.skipped(PassName::WaterMap, reason);
-    let place = |at: &GlobalTransform| at.translation().as_dvec3();
-    let Some(lead) = leading_view(views.iter()).map(place) else {
+    let place = |at: &GlobalTransform| [at.translation().x, at.translation().z].map(f64::from);
+    let Some(leading) = leading_view(views).map(place) else {
         skip(SkipReason::NoView);
         return;
     };
-    // Amid all views while each has finest texels around it, else around the leading one.
-    let eyes = views.iter().filter(|(_, camera, _)| camera.is_active);
-    let settings = this.map.settings();
-    let reach = REACH * settings.level_cell_m(0) * f64::from(settings.texels);
-    let eye = amid_eyes(lead, eyes.map(|(_, _, at)| place(at)), reach).unwrap_or(lead);
     let state = active
         .entity()
         .and_then(|entity| Some((entity, weather.get(entity).ok()?)));
@@ -184,7 +178,10 @@ pub(super) fn follow_map(
         }
     }
     this.ground = Some(ground_now);
-    this.map.follow([eye.x, eye.z]);
+    eyes.clear();
+    let active = views.iter().filter(|(_, camera, _)| camera.is_active);
+    eyes.extend(active.map(|(_, _, at)| place(at)));
+    this.map.follow(leading, &eyes);
     let time_s = now.0.saturating_sub(before_ns) as f64 * 1e-9;
     let evaporation_mm = state.evaporation_mm_h().max(0.0) * time_s / 3600.0;
     // The weather has been validated before it became state.

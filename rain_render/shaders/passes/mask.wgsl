@@ -55,12 +55,14 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
     let exposure = rain_exposure(cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal))
         * rain_catch(normal.y, dot(normal, to_rain));
-    // As the wet material shows bare ground: the weather's wetness where the rain reaches, what the ground and the finer
-    // map near the view remember, and all soaked under a puddle. What single meshes are set to is theirs alone.
+    // As the wet material shows it: the weather's wetness where the rain reaches, what the ground remembers on it, and
+    // all soaked under a puddle.
     let films = rain_film_texel(film_map, film_sampler, view.surface.levels, p);
-    let near = rain_water_map(near_map, film_sampler, view.surface.map, p.xz, films);
-    let known = select(vec4<f32>(0.0), near, films.w > 0.0);
-    let ground = rain_memory_of(view.surface.levels, p, known);
+    var ground = vec3<f32>(0.0);
+    if (films.w > 0.0) {
+        let near = rain_water_map(near_map, film_sampler, view.surface.map, p.xz, films);
+        ground = rain_memory_of(view.surface.levels, p, near);
+    }
     let wet = mix(rain_point_wetness(view.surface.state, exposure), ground.x, rain_memory_share(ground.z, normal.y));
     let depth_of_water = rain_standing_water(level_map, view.surface.levels, p);
     let puddle = rain_puddle_rim(depth_of_water) * smoothstep(0.85, 0.95, normal.y);

@@ -59,6 +59,8 @@ pub struct WaterMap {
     cells_sent: bool,
     /// Classes of the ground.
     present: [bool; SurfaceClass::COUNT],
+    /// What each level lies around, amid the eyes or at the leading one (world x, z). Units: m.
+    centres: [[f64; 2]; MAX_LEVELS],
     /// World texel of each level's corner: where it should be, and where the texels lie that are filled.
     wanted: Option<[[i64; 2]; MAX_LEVELS]>,
     held: Option<[[i64; 2]; MAX_LEVELS]>,
@@ -81,6 +83,7 @@ impl WaterMap {
             cells: Vec::new(),
             cells_sent: false,
             present: [false; SurfaceClass::COUNT],
+            centres: [[0.0; 2]; MAX_LEVELS],
             wanted: None,
             held: None,
             pending: Pending::default(),
@@ -173,16 +176,32 @@ impl WaterMap {
         self.wanted = None;
     }
 
-    /// The view (world x, z; units: m). The levels move in steps of an eighth of their side.
-    pub fn follow(&mut self, view_m: [f64; 2]) {
-        if !view_m.iter().all(|at| at.abs() <= FARTHEST_M) {
+    /// The leading view and the places of all (world x, z; units: m). A level lies amid all of them if they are no
+    /// farther apart than [`WaterMapSettings::spread_m`], else around the leading one; it moves in steps of an eighth of
+    /// its side. A leading view that is nowhere is not followed, others that are nowhere do not count.
+    pub fn follow(&mut self, leading_m: [f64; 2], all_m: &[[f64; 2]]) {
+        let is_somewhere = |view: &[f64; 2]| view.iter().all(|at| at.abs() <= FARTHEST_M);
+        if !is_somewhere(&leading_m) {
             return;
         }
+        let (mut low, mut high) = (leading_m, leading_m);
+        for view in all_m.iter().filter(|view| is_somewhere(view)) {
+            low = [0, 1].map(|axis| low[axis].min(view[axis]));
+            high = [0, 1].map(|axis| high[axis].max(view[axis]));
+        }
+        let apart_m = (high[0] - low[0]).max(high[1] - low[1]);
         let half = i64::from(self.settings.texels / 2);
         let snap = self.settings.snap();
         let mut corners = self.wanted.unwrap_or_default();
         for (level, corner) in corners.iter_mut().enumerate().take(self.settings.levels as usize) {
-            for (corner, at) in corner.iter_mut().zip(view_m) {
+            let amid = apart_m > 0.0 && apart_m <= self.settings.spread_m(level);
+            let centre = if amid {
+                [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]))
+            } else {
+                leading_m
+            };
+            self.centres[level] = centre;
+            for (corner, at) in corner.iter_mut().zip(centre) {
                 let texel = at / self.settings.level_cell_m(level);
                 let off = (texel - (*corner + half) as f64).abs();
                 if self.wanted.is_none() || off > 0.75 * snap as f64 {
@@ -446,6 +465,7 @@ impl WaterMap {
     pub fn place(&self) -> WaterMapPlace {
         WaterMapPlace {
             settings: self.settings,
+            centres: self.centres,
             held: self.held,
         }
     }
@@ -470,6 +490,7 @@ impl WaterMap {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaterMapPlace {
     settings: WaterMapSettings,
+    centres: [[f64; 2]; MAX_LEVELS],
     held: Option<[[i64; 2]; MAX_LEVELS]>,
 }
 
@@ -491,20 +512,24 @@ impl WaterMapPlace {
             let side = cell * f64::from(self.settings.texels);
             let inside = (0..2)
                 .map(|axis| {
-                    let at = eye_m[axis] - held[level][axis] as f64 * cell;
+                    let at = self.centres[level][axis] - held[level][axis] as f64 * cell;
                     at.min(side - at)
                 })
                 .fold(f64::INFINITY, f64::min);
-            // As far as it holds wherever the eye is between two moves: the border stays at one distance.
-            let steady = 0.5 * side - 0.75 * self.settings.snap() as f64 * cell;
-            let far = (inside.min(steady) - 2.0 * cell).max(0.0);
+            // As far as it holds wherever its centre is between two moves: the border stays at one distance.
+            let far = (inside - 2.0 * cell).min(self.settings.holds_m(level)).max(0.0);
             let [x, z] = eye_m.map(|at| (at / side).rem_euclid(1.0) as f32);
             [x, z, (1.0 / side) as f32, far as f32]
         };
+        let centre = |level: usize| [0, 1].map(|axis| (self.centres[level][axis] - eye_m[axis]) as f32);
         WaterMapPlaces {
             fine: place(0),
             middle: place(1),
             coarse: place(2),
+            fine_centre: centre(0),
+            middle_centre: centre(1),
+            coarse_centre: centre(2),
+            pad: [0.0; 2],
         }
     }
 }

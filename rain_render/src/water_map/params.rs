@@ -9,6 +9,9 @@ pub const MAX_LEVELS: usize = 3;
 /// Format of the texture that shows the map.
 pub const WATER_MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
+/// Share of the distance to which a level holds from which it fades, as in `rain_water_map_level`.
+const UNFADED: f64 = 0.75;
+
 /// Settings of a [`super::WaterMap`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaterMapSettings {
@@ -63,6 +66,20 @@ impl WaterMapSettings {
     #[must_use]
     pub fn level_cell_m(&self, level: usize) -> f64 {
         self.cell_m * f64::from(1_u32 << level.min(MAX_LEVELS))
+    }
+
+    /// How far from its centre a level holds wherever that is between two moves. Units: m.
+    #[must_use]
+    pub fn holds_m(&self, level: usize) -> f64 {
+        let texels = f64::from(self.texels / 2) - 0.75 * self.snap() as f64 - 2.0;
+        texels * self.level_cell_m(level)
+    }
+
+    /// How far apart views may be for a level to lie amid them: each then has at least half of the ground around it that
+    /// the level shows unfaded to one view alone. By default 9.7 m and 19.3 m. Units: m.
+    #[must_use]
+    pub fn spread_m(&self, level: usize) -> f64 {
+        UNFADED * self.holds_m(level)
     }
 
     /// Texels by which a level moves at once.

@@ -175,7 +175,7 @@ fn the_map_follows_the_column_in_double_precision_through_a_day_of_weather() {
     let mut rig = Rig::new(&gpu, &small());
     let (ground, cells) = (place(128), striped(128));
     rig.map.set_ground(&ground, cells.iter().copied()).unwrap();
-    rig.map.follow([0.0, 0.0]);
+    rig.map.follow([0.0, 0.0], &[]);
     rig.map.advance(1e-9, 0.0, 0.25, false).unwrap();
     assert!(rig.frame(&gpu, dry), "the map is filled");
     let mut columns = vec![SurfaceColumn::default(); cells.len()];
@@ -232,7 +232,7 @@ fn what_is_scrolled_over_is_kept_bit_for_bit_and_new_texels_start_from_the_groun
         soil_s: (x + z) as f32,
     };
     // No rain, no evaporation: only the move is seen.
-    rig.map.follow([0.0, 0.0]);
+    rig.map.follow([0.0, 0.0], &[]);
     assert!(rig.frame(&gpu, seed));
     let seeds = rig.frame.seeds();
     assert_eq!(seeds, 128 * 128, "all cells under the coarse level");
@@ -254,7 +254,7 @@ fn what_is_scrolled_over_is_kept_bit_for_bit_and_new_texels_start_from_the_groun
     let first: Vec<_> = places.iter().map(|p| rig.at(&before, 0, p[0], p[1])).collect();
     for eye in [[2.6, 0.0], [2.6, -3.1], [7.0, 4.0]] {
         let old = rig.map.clone();
-        rig.map.follow(eye);
+        rig.map.follow(eye, &[]);
         assert!(rig.frame(&gpu, seed));
         assert!(rig.frame.seeds() < seeds, "only what is new is asked for");
         let after = rig.water(&gpu);
@@ -286,11 +286,57 @@ fn what_is_scrolled_over_is_kept_bit_for_bit_and_new_texels_start_from_the_groun
         places.fine[3] > 4.0 && places.middle[3] > 10.0 && places.coarse == [0.0; 4],
         "{places:?}"
     );
-    assert!(
-        rig.map.place().seen_from([50.0, 0.0]).fine[3] == 0.0,
-        "no level is there"
+    // It lies at one place for every eye.
+    let far = rig.map.place().seen_from([50.0, 0.0]);
+    assert_eq!(
+        (places.fine_centre, far.fine_centre, far.fine[3]),
+        ([0.0; 2], [-43.0, 4.0], places.fine[3])
     );
     assert_eq!(rig.texture.depth_or_array_layers(), 2);
+}
+
+#[test]
+fn levels_lie_amid_views_that_fit_and_around_the_leading_one_otherwise() {
+    let settings = small();
+    let [fine, coarse] = [0, 1].map(|level| settings.spread_m(level));
+    assert!(fine > 3.0 && coarse > 1.9 * fine, "{fine} and {coarse} m");
+    let cells = striped(256);
+    let leading = [-1.3, 0.4];
+    // How far the second view is, and which levels lie amid both.
+    for (apart, amid) in [
+        (0.0, [true, true]),
+        (0.9 * fine, [true, true]),
+        (1.1 * fine, [false, true]),
+        (0.9 * coarse, [false, true]),
+        (1.1 * coarse, [false, false]),
+        (1e4, [false, false]),
+        (f64::NAN, [false, false]),
+    ] {
+        let mut map = WaterMap::new(&settings).unwrap();
+        map.set_ground(&place(256), cells.iter().copied()).unwrap();
+        let second = [leading[0] - apart, leading[1] + 0.5 * apart];
+        map.follow(leading, &[second, leading]);
+        assert_eq!(map.rest(false), None);
+        map.take(&mut WaterMapFrame::default(), dry);
+        let places = map.place().seen_from(leading);
+        let middle = [-0.5 * apart, 0.25 * apart].map(|at| at as f32);
+        for (found, amid) in [places.fine_centre, places.middle_centre].into_iter().zip(amid) {
+            let right = if amid { middle } else { [0.0; 2] };
+            let off = [0, 1].map(|axis| (found[axis] - right[axis]).abs());
+            assert!(off[0].max(off[1]) < 1e-5, "{apart} m apart: {found:?}, not {right:?}");
+        }
+        // A view that fits stands on the level, and no border is nearer to it than half of what one view alone has.
+        for (level, far) in [(0, places.fine[3]), (1, places.middle[3])] {
+            assert!(f64::from(far) > 0.6 * settings.holds_m(level), "{places:?}");
+            if amid[level] {
+                assert!(map.texel_at(level, second).is_some() && map.texel_at(level, leading).is_some());
+                assert!(
+                    f64::from(far) * 0.75 - 0.5 * apart > 0.25 * settings.holds_m(level),
+                    "{apart}: {places:?}"
+                );
+            }
+        }
+    }
 }
 
 /// A level ground of asphalt over a square.
@@ -334,7 +380,7 @@ fn presses_take_and_lay_what_they_do_on_the_simulations_ground() {
         })
         .collect();
     rig.map.set_ground(&place(64), cells.iter().copied()).unwrap();
-    rig.map.follow([0.0, 0.0]);
+    rig.map.follow([0.0, 0.0], &[]);
     rig.frame(&gpu, |x, z| ground.cell_water((z * 64 + x) as usize));
     for (from, to, half, share, thrown) in [
         ([-3.0, 1.0], [3.0, 1.0], 0.25, 0.7, 0.0),
@@ -391,7 +437,7 @@ fn a_roof_keeps_its_ground_dry_and_leaves_a_dry_patch_until_it_rains_on_it() {
         128 * 128
     ];
     rig.map.set_ground(&place(128), cells.iter().copied()).unwrap();
-    rig.map.follow([0.0, 0.0]);
+    rig.map.follow([0.0, 0.0], &[]);
     // A roof of 4 m at 3 m height, or none.
     let roof = |present: bool| {
         let texels = 256;
@@ -458,7 +504,7 @@ fn nothing_is_done_while_dry_settled_or_unchanged() {
         128 * 128
     ];
     rig.map.set_ground(&place(128), cells.iter().copied()).unwrap();
-    rig.map.follow([0.0, 0.0]);
+    rig.map.follow([0.0, 0.0], &[]);
     rig.map.advance(0.0, 0.1, 1.0, false).unwrap();
     assert_eq!(rig.map.rest(true), Some(WaterMapRest::Dry));
     assert!(!rig.map.is_shown());
@@ -505,7 +551,7 @@ fn a_film_that_runs_off_is_followed_until_only_the_texture_holds_water() {
     rig.map
         .set_ground(&place(128), vec![cell; 128 * 128].iter().copied())
         .unwrap();
-    rig.map.follow([0.0, 0.0]);
+    rig.map.follow([0.0, 0.0], &[]);
     for _ in 0..1200 {
         rig.map.advance(40.0 / 3600.0, 0.0, 1.0, false).unwrap();
         rig.frame(&gpu, dry);
@@ -571,7 +617,7 @@ fn bad_numbers_are_refused_by_name_and_change_nothing() {
             ..place(128)
         };
         assert!(map.set_ground(&ground, cells.iter().copied()).is_err());
-        map.follow([bad * 1e9, 0.0]);
+        map.follow([bad * 1e9, 0.0], &[]);
     }
     assert!(
         map.set_ground(&place(64), cells.iter().copied()).is_err(),

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use bevy::math::DVec2;
+use bevy::math::{DVec2, Vec3};
+use rain_plugins::prelude::MovesInRain;
 use rain_plugins::scenario::file::ScenePart;
+use rain_plugins::surface::GroundMap;
 use test_support::shots::{Plan, View, mean, raining, steady};
 use test_support::{assets, gpu, world};
 
@@ -49,6 +51,44 @@ fn the_wet_mask_keeps_what_the_ground_took_under_a_roof_that_has_just_come() {
         before > 0.99 && after == 0.0,
         "{before}, then {after} without the ground"
     );
+}
+
+#[test]
+fn the_wet_mask_shows_the_dry_patch_that_a_truck_leaves_as_the_water_map_knows_it() {
+    if !gpu::available() {
+        return;
+    }
+    // Under the truck and beside it, from straight above.
+    let shown = |map: bool| {
+        let view = View::new([0.0, 10.0, 0.0], [0.0, 0.0, 0.0]);
+        let plan = Plan::new(steady(60.0, [0.0; 3]), 31.3, &[view]);
+        let mut truck = None;
+        let mut session = plan.session(Path::new("."), |world| {
+            world::ground(world);
+            if !map {
+                world.remove_resource::<GroundMap>();
+            }
+            let (low, high) = (Vec3::new(-1.5, 0.6, -1.5), Vec3::new(1.5, 2.6, 1.5));
+            let block = world::block(world, "truck", low, high, world::STONE);
+            // The simulation's ground does not know it.
+            world.entity_mut(block).insert(MovesInRain);
+            truck = Some(block);
+        });
+        session.play(30.0, 2.0).expect("the renderer goes on");
+        session.app().world_mut().despawn(truck.expect("a truck"));
+        session.play(31.0, 2.0).expect("the renderer goes on");
+        let shot = plan.shot(&mut session, 0);
+        let near = |p: bevy::math::DVec3, x: f64| p.y.abs() < 0.02 && (p.x - x).abs() < 0.8 && p.z.abs() < 0.8;
+        [0.0, 4.0].map(|x| {
+            let pixels = shot.where_surface(|p| near(p, x));
+            assert!(pixels.len() > 60, "{} pixels", pixels.len());
+            mean(&pixels, |p| p.wet)
+        })
+    };
+    let [under, beside] = shown(true);
+    assert!(under < 0.15 && beside > 0.8, "{under} under it, {beside} beside it");
+    let [under, beside] = shown(false);
+    assert!(under > 0.8 && beside > 0.8, "without the map {under} and {beside}");
 }
 
 #[test]
