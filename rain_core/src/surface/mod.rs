@@ -14,6 +14,7 @@
 //! | `surface_state.rs` | dry, wet, drenched, puddle |
 //! | `wet_albedo.rs` | how much darker a soaked body is |
 //! | `wet_roughness.rs` | how smooth a film makes it |
+//! | `wet_texel.rs` | all of that for a texel of a material, baked ahead |
 //! | `water_colour.rs` | what clear and muddy water leave of the light |
 //! | `basins/` | hollows that fill, spill and merge |
 //! | `ground/` | all of it on a grid over a scene |
@@ -39,6 +40,7 @@ mod surface_state;
 mod water_colour;
 mod wet_albedo;
 mod wet_roughness;
+mod wet_texel;
 
 pub use auto_paint::{PaintPlace, normalised_painted_depth, painted_channels, painted_depth};
 pub use film_step::{drained_film, drained_film_f32, fast_film_step_f32, film_step, film_step_f32};
@@ -56,3 +58,4 @@ pub use surface_state::{SurfaceState, SurfaceWeights};
 pub use water_colour::{Water, mud_phase, under_water};
 pub use wet_albedo::{WetBody, saturated_albedo, saturated_albedo_f32, wet_albedo, wet_albedo_f32, wet_albedo_rgb};
 pub use wet_roughness::{WATER_F0, film_roughness, film_roughness_f32, widened_roughness};
+pub use wet_texel::{FixedWetness, MaterialTexel, wet_texel};

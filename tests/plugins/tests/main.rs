@@ -24,4 +24,5 @@ mod tiles;
 mod two_views;
 mod views;
 mod water_map;
+mod wet_textures;
 mod wheel_ruts;
