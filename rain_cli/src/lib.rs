@@ -6,3 +6,4 @@ pub mod bake;
 pub mod bench;
 pub mod model;
 pub mod print;
+pub mod wet_textures;

@@ -93,9 +93,9 @@ pub mod prelude {
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::surface::{
-        AutoPaint, AutoPaintDone, AutoPaintError, Gap, GroundMapSettings, KeepDry, MovesInRain, NoisePuddles,
+        AutoPaint, AutoPaintDone, AutoPaintError, FilmFlow, Gap, GroundMapSettings, KeepDry, MovesInRain, NoisePuddles,
         PaintSource, PlanarReflection, PuddlePaint, SceneGap, ShowPaint, SurfaceWetting, WaterAppearance,
-        WaveNormalMaps, WetLook,
+        WaveNormalMaps, WetLook, WheelRuts,
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{

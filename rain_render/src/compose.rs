@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::RING_FADE;
 
 /// Structs that cross from the CPU.
@@ -34,7 +35,9 @@ pub const LIBRARIES: &[Library] = library![
     "standing_water",
     "ground_memory",
     "wind_waves",
+    "rut_lanes",
     "placed_water",
+    "film_waves",
     "artist_look",
     "slopes",
     "waves",
@@ -99,6 +102,8 @@ pub fn constants() -> String {
         ("RAIN_WIND_DIRECTIONS", WIND_DIRECTIONS),
         ("RAIN_WAVE_PERIOD_S", WAVE_PERIOD_S),
         ("RAIN_RING_FADE", f64::from(RING_FADE)),
+        ("RAIN_FLOW_PERIOD_S", FLOW_PERIOD_S),
+        ("RAIN_FLOW_NOISE", FLOW_NOISE),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }

@@ -5,3 +5,4 @@ mod document;
 mod program;
 mod values;
 mod weather_model;
+mod wet_textures;

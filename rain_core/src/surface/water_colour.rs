@@ -43,6 +43,13 @@ impl Water {
         mud_albedo: [0.0; 3],
     };
 
+    /// A puddle of a street: clear but for a little loam.
+    pub const STREET: Self = Self {
+        turbidity_per_m: 5.0,
+        mud_albedo: [0.30, 0.22, 0.13],
+        ..Self::CLEAR
+    };
+
     /// Water of a muddy road: the ground disappears within a few centimetres. Chosen by eye (E89, C49).
     pub const MUDDY: Self = Self {
         absorption_per_m: [3.0, 6.0, 12.0],

@@ -38,8 +38,12 @@ pub fn closed_film_share_f32(film_mm: f32, texture_depth_mm: f32) -> f32 {
 /// high as both together, so that lamps keep their glint where only part of the ground mirrors. Error: 5e-16.
 #[must_use]
 pub fn film_roughness(dry: f64, water: f64, film_mm: f64, texture_depth_mm: f64) -> f64 {
-    let (dry, water) = (clamped(dry, 0.0, 1.0), clamped(water, 0.0, 1.0));
-    let s = closed_film_share(film_mm, texture_depth_mm);
+    one_lobe(dry, water, closed_film_share(film_mm, texture_depth_mm))
+}
+
+/// Roughness of one lobe as high as those of two parts of a surface, `share` of which has `water`.
+pub(super) fn one_lobe(dry: f64, water: f64, share: f64) -> f64 {
+    let (dry, water, s) = (clamped(dry, 0.0, 1.0), clamped(water, 0.0, 1.0), share);
     if s <= 0.0 {
         return dry;
     }

@@ -198,7 +198,7 @@ fn water_look(appearance: &WaterAppearance, surface: &SurfaceState, maps: bool) 
         ],
         ripples: [0.0; 4],
         waves: [0.0; 4],
-        place: [0.0; 4],
+        place: [0.0, 0.0, appearance.flow_strength, surface.flow_m_s],
         map: [0.0, 0.0, 0.0, if maps { appearance.wave_strength } else { 0.0 }],
         more_map: [0.0, 0.0, 0.0, appearance.puddle_reflection],
     }

@@ -241,7 +241,7 @@ fn surface_params(
     let mut water = surface.water;
     let wind_tile_m = compose::WIND_TILE / f64::from(water.ambient[1]);
     let place = (origin.xz() / wind_tile_m).fract_gl().as_vec2();
-    water.place = [place.x, place.y, 0.0, 0.0];
+    water.place[..2].copy_from_slice(&place.to_array());
     if waves.ripple_side_m > 0.0 {
         let place = (origin.xz() / waves.ripple_side_m).fract_gl().as_vec2();
         water.ripples = [(1.0 / waves.ripple_side_m) as f32, place.x, place.y, 1.0];

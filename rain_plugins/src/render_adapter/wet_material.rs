@@ -34,6 +34,15 @@ pub struct WetSurface {
     /// Look (0 physical, else a source's rules), fixed state (0 none, 1 dry … 4 puddle), ground only; w unused.
     #[uniform(100)]
     pub look: Vec4,
+    /// Wheel ruts of noise puddles: cosine and sine of the lanes' direction, offset m, depth.
+    #[uniform(100)]
+    pub ruts: Vec4,
+    /// Their lane m, half track m, standard deviation m; w: 1 where there are any.
+    #[uniform(100)]
+    pub rut_shape: Vec4,
+    /// Flow of the mesh's own: velocity m/s, speed of the flow map m/s (0: none), strength.
+    #[uniform(100)]
+    pub flow: Vec4,
     /// The cover map.
     #[texture(101, sample_type = "depth")]
     pub cover: Handle<Image>,
@@ -68,6 +77,9 @@ pub struct WetSurface {
     /// The second of them.
     #[texture(115)]
     pub more_wave_normals: Option<Handle<Image>>,
+    /// Flow map of the mesh, where there is one.
+    #[texture(116)]
+    pub flow_map: Option<Handle<Image>>,
 }
 
 impl MaterialExtension for WetSurface {
@@ -103,7 +115,9 @@ impl Plugin for WetMaterialPlugin {
                 "wetness",
                 "standing_water",
                 "wind_waves",
+                "rut_lanes",
                 "placed_water",
+                "film_waves",
                 "artist_look",
                 "ground_memory",
                 "water_map",

@@ -488,6 +488,8 @@ pub struct WaterSettings {
     pub wave_velocity_m_s: Option<[f32; 2]>,
     /// Multiple of the rings that drops make.
     pub ripple_strength: f32,
+    /// Multiple of the slope of wavelets on films that run down slopes; 0: none. Domain: [0, 4]. Default: 1.
+    pub flow_strength: f32,
     /// Share of the mirrored view in reflections.
     pub reflection_strength: f32,
     /// Share of the light that standing water mirrors.
@@ -508,6 +510,7 @@ impl Default for WaterSettings {
             wave_length_m: look.wave_length_m,
             wave_velocity_m_s: look.wave_velocity_m_s.map(|v| v.to_array()),
             ripple_strength: look.ripple_strength,
+            flow_strength: look.flow_strength,
             reflection_strength: look.reflection_strength,
             puddle_reflection: look.puddle_reflection,
             simulation: true,
@@ -528,6 +531,7 @@ impl WaterSettings {
             wave_length_m: self.wave_length_m,
             wave_velocity_m_s: self.wave_velocity_m_s.map(Into::into),
             ripple_strength: self.ripple_strength,
+            flow_strength: self.flow_strength,
             reflection_strength: self.reflection_strength,
             puddle_reflection: self.puddle_reflection,
         }

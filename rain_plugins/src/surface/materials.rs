@@ -9,6 +9,7 @@ use rain_core::surface::SurfaceState;
 use rain_ecs::prelude::*;
 
 use super::dynamic::{OwnWetness, give_own_wetness};
+use super::flow::{FilmFlow, OWN_FLOW};
 use super::geometry::SceneGeometryPlugin;
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::look::WetLook;
@@ -112,8 +113,9 @@ impl OriginalMaterialItem<'_, '_> {
 /// How a mesh takes water: what wet copies of one material differ by.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct WetKey {
-    uniform: [[u32; 4]; 6],
+    uniform: [[u32; 4]; 9],
     painted: Option<AssetId<Image>>,
+    flow_map: Option<AssetId<Image>>,
 }
 
 /// Wet copies, by original and by how they take water.
@@ -136,6 +138,7 @@ impl Plugin for WetSurfacePlugin {
             .register_type::<PlanarReflection>()
             .register_type::<PuddlePaint>()
             .register_type::<NoisePuddles>()
+            .register_type::<FilmFlow>()
             .register_type::<RainMirrorView>()
             .register_type::<ReflectionSize>()
             .register_type::<WaterAppearance>()
@@ -252,6 +255,7 @@ struct Wettable {
     wetting: Option<&'static SurfaceWetting>,
     paint: Option<&'static PuddlePaint>,
     noise: Option<&'static NoisePuddles>,
+    flow: Option<&'static FilmFlow>,
     own: Option<&'static OwnWetness>,
 }
 
@@ -295,16 +299,30 @@ fn wet_meshes(
         // What does not validate counts as absent.
         let paint = mesh.paint.and_then(|p| p.validated().map_err(&mut refuse).ok());
         let noise = mesh.noise.and_then(|n| n.validated().map_err(&mut refuse).ok());
+        let flow = mesh.flow.and_then(|f| f.validated().map_err(&mut refuse).ok());
         let refined = mesh.wetting.copied().unwrap_or_default();
         let (mut wetting, look) = (refined.uniform(), refined.look_uniform(*look));
         wetting.z = f32::from(u8::from(mesh.own.is_some()));
         let [paint_uniform, paint_flags] = paint.map_or([Vec4::ZERO; 2], PuddlePaint::uniform);
-        let [noise_uniform, noise_flags] = noise.map_or([Vec4::ZERO; 2], NoisePuddles::uniform);
+        let [noise_uniform, noise_flags, ruts, rut_shape] = noise.map_or([Vec4::ZERO; 4], NoisePuddles::uniform);
+        let flow_uniform = flow.map_or(OWN_FLOW, FilmFlow::uniform);
+        let flow_map = flow.and_then(|flow| flow.map.clone());
         let painted = paint.and_then(PuddlePaint::texture);
-        let uniform = [wetting, paint_uniform, paint_flags, noise_uniform, noise_flags, look];
+        let uniform = [
+            wetting,
+            paint_uniform,
+            paint_flags,
+            noise_uniform,
+            noise_flags,
+            look,
+            ruts,
+            rut_shape,
+            flow_uniform,
+        ];
         let key = WetKey {
             uniform: uniform.map(|v| v.to_array().map(f32::to_bits)),
             painted: painted.as_ref().map(Handle::id),
+            flow_map: flow_map.as_ref().map(Handle::id),
         };
         let [wave_normals, more_wave_normals] = both(wave_images.as_ref());
         let copy = copies.0.entry(id).or_default().entry(key).or_insert_with(|| {
@@ -317,6 +335,9 @@ fn wet_meshes(
                     noise: noise_uniform,
                     noise_flags,
                     look,
+                    ruts,
+                    rut_shape,
+                    flow: flow_uniform,
                     cover: map.image.clone(),
                     params: surface.handles.params.clone(),
                     levels: water.levels.clone(),
@@ -328,6 +349,7 @@ fn wet_meshes(
                     painted,
                     wave_normals,
                     more_wave_normals,
+                    flow_map,
                 },
             })
         });
@@ -342,6 +364,7 @@ type ChangedWetting = Or<(
     Changed<SurfaceWetting>,
     Changed<PuddlePaint>,
     Changed<NoisePuddles>,
+    Changed<FilmFlow>,
     Added<OwnWetness>,
 )>;
 
@@ -353,14 +376,19 @@ fn follow_settings(
     look: Res<WetLook>,
     changed: Query<(Entity, &DryMaterial), (With<MeshMaterial3d<WetMaterial>>, ChangedWetting)>,
     all: Query<(Entity, &DryMaterial), With<MeshMaterial3d<WetMaterial>>>,
-    (mut wetting, mut paint, mut noise): (
+    (mut wetting, mut paint, mut noise, mut flow): (
         RemovedComponents<SurfaceWetting>,
         RemovedComponents<PuddlePaint>,
         RemovedComponents<NoisePuddles>,
+        RemovedComponents<FilmFlow>,
     ),
 ) {
     let everything = std::mem::replace(&mut *shown, *look) != *look;
-    let gone = wetting.read().chain(paint.read()).chain(noise.read());
+    let gone = wetting
+        .read()
+        .chain(paint.read())
+        .chain(noise.read())
+        .chain(flow.read());
     let gone: Vec<Entity> = gone.filter(|_| !everything).collect();
     let changed = changed.iter().filter(|_| !everything);
     let gone = gone.into_iter().filter_map(|entity| all.get(entity).ok());

@@ -6,6 +6,7 @@
 
 mod auto_paint;
 mod dynamic;
+mod flow;
 mod gaps;
 mod geometry;
 mod ground;
@@ -20,6 +21,7 @@ mod water;
 
 pub use auto_paint::{AutoPaint, AutoPaintDone, AutoPaintError, PaintedMesh};
 pub use dynamic::OwnWetness;
+pub use flow::FilmFlow;
 pub use gaps::{Gap, LeftOut, SceneGap};
 pub use geometry::MovesInRain;
 pub(crate) use geometry::SceneGeometryPlugin;
@@ -28,7 +30,7 @@ pub use look::WetLook;
 pub(crate) use map::MapHandover;
 pub use map::{GroundMap, GroundMapSettings};
 pub use materials::{DryMaterial, KeepDry, OriginalMaterial, SurfaceWetting, WetSurfacePlugin};
-pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint};
+pub use paint::{NoisePuddles, PaintSource, PuddlePaint, ShowPaint, WheelRuts};
 pub use reflection::{MirrorFrame, MirrorView, PlanarReflection, RainMirrorView, ReflectionSize};
 pub use state::{SurfaceState, WAVE_PERIOD_S};
 pub(crate) use triangles::{MeshTriangles, triangles_of};

@@ -1,11 +1,11 @@
 //! The artists' ways to place puddles on their own meshes: painted channels (Lagarde 2013) and a noise map over a
 //! height map (Nguyenova 2021).
 
-use bevy::math::DVec2;
+use bevy::math::{DVec2, ops};
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::surface::artist_look::{nguyenova_puddle_amount, nguyenova_puddle_depth_mm, screen_blend};
-use rain_core::surface::puddle_map;
+use rain_core::surface::{RutLanes, puddle_map};
 
 /// Where the channels of a [`PuddlePaint`] come from.
 ///
@@ -70,6 +70,61 @@ impl Default for PuddlePaint {
     }
 }
 
+/// Wheel ruts that [`NoisePuddles`] gather in and stretch along, on roads whose mesh is flat: straight lanes side by side,
+/// two ruts to each.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct WheelRuts {
+    /// Where the lanes lead, from the world's z towards its x. Units: rad. Domain: [−10, 10]. Default: 0.
+    pub direction_rad: f32,
+    /// Width of a lane. Units: m. Domain: [0.1, 1000]. Default: 3.5.
+    pub lane_m: f32,
+    /// Middle of a lane: distance from the world's origin across the lanes. Units: m. Domain: [−1e6, 1e6]. Default: 1.75,
+    /// with the road's middle at the origin.
+    pub offset_m: f32,
+    /// Distance of a lane's two ruts. Units: m. Domain: [0, 1000]. Default: 1.5.
+    pub track_m: f32,
+    /// Standard deviation of a rut's bell-shaped cross section. Units: m. Domain: [0.01, 100]. Default: 0.25.
+    pub half_width_m: f32,
+    /// How far the ground between the ruts stands above their bottoms, as a share of the map: 1 keeps puddles to the ruts
+    /// at any level below 1. Domain: [0, 1]. Default: 0.6.
+    pub depth: f32,
+}
+
+impl Default for WheelRuts {
+    fn default() -> Self {
+        Self {
+            direction_rad: 0.0,
+            lane_m: 3.5,
+            offset_m: 1.75,
+            track_m: 1.5,
+            half_width_m: 0.25,
+            depth: 0.6,
+        }
+    }
+}
+
+impl WheelRuts {
+    fn lanes(self) -> RutLanes {
+        RutLanes {
+            direction_rad: f64::from(self.direction_rad),
+            lane_m: f64::from(self.lane_m),
+            offset_m: f64::from(self.offset_m),
+            track_m: f64::from(self.track_m),
+            half_width_m: f64::from(self.half_width_m),
+            depth: f64::from(self.depth),
+        }
+    }
+
+    /// See `ruts` in the wet material's shader.
+    fn uniform(self) -> [Vec4; 2] {
+        let (sin, cos) = ops::sin_cos(self.direction_rad);
+        [
+            Vec4::new(cos, sin, self.offset_m, self.depth),
+            Vec4::new(self.lane_m, 0.5 * self.track_m, self.half_width_m, 1.0),
+        ]
+    }
+}
+
 /// Puddles from a noise map in world space, screen-blended with the material's depth map, filled to the artists'
 /// puddle level: amount = max(0, level − blended), at most 10 mm deep. Around a puddle the ground is drenched: under a
 /// film, without standing water. By its height ground is so wet, drenched or puddle (Nakamae et al. 1990).
@@ -82,8 +137,10 @@ pub struct NoisePuddles {
     pub size_m: f32,
     /// Level in place of the weather's. Domain: [0, 1]. `None`: the artists' puddle level.
     pub level: Option<f32>,
-    /// Stretch along the world's z, as in wheel ruts: 1 round. Domain: [1, 100]. Default: 1.
+    /// Stretch along the lanes of `ruts`, without them along the world's z: 1 round. Domain: [1, 100]. Default: 1.
     pub stretch: f32,
+    /// Wheel ruts that puddles gather in. Default: none.
+    pub ruts: Option<WheelRuts>,
     /// Whether the material's depth map leans puddles into its lower parts.
     pub height_map: bool,
     /// How much of the noise counts: 0 leaves the material's depth map alone, which fills joints and cracks.
@@ -101,6 +158,7 @@ impl Default for NoisePuddles {
             size_m: 4.0,
             level: None,
             stretch: 1.0,
+            ruts: None,
             height_map: true,
             noise: 1.0,
             drenched: 0.1,
@@ -147,7 +205,13 @@ impl NoisePuddles {
     #[must_use]
     pub fn depth_m(&self, place: DVec2, puddles: f64, height: f64) -> f64 {
         let [x, z] = [f64::from(self.size_m), f64::from(self.size_m * self.stretch)];
-        let map = f64::from(self.noise) * puddle_map(place.x / x, place.y / z, self.seed);
+        let lanes = self.ruts.map(WheelRuts::lanes);
+        let [across, along] = lanes.map_or(place.to_array(), |lanes| lanes.across_and_along(place.x, place.y));
+        let rut = lanes.map_or(0.0, |lanes| lanes.height(across));
+        let map = screen_blend(
+            f64::from(self.noise) * puddle_map(across / x, along / z, self.seed),
+            rut,
+        );
         let height = if self.height_map { height } else { 0.0 };
         let level = self.level.map_or(puddles, f64::from);
         1e-3 * nguyenova_puddle_depth_mm(nguyenova_puddle_amount(level, screen_blend(map, height)))
@@ -163,11 +227,13 @@ impl NoisePuddles {
         in_range("stretch", f64::from(self.stretch), 1.0, 100.0, "1 to 100")?;
         in_range("noise", f64::from(self.noise), 0.0, 1.0, "0 to 1")?;
         in_range("drenched", f64::from(self.drenched), 0.0, 1.0, "0 to 1")?;
+        self.ruts.map(|ruts| ruts.lanes().validated()).transpose()?;
         Ok(self)
     }
 
     /// See `Noise` in the wet material's shader.
-    pub(super) fn uniform(&self) -> [Vec4; 2] {
+    pub(super) fn uniform(&self) -> [Vec4; 4] {
+        let [ruts, rut_shape] = self.ruts.map_or([Vec4::ZERO; 2], WheelRuts::uniform);
         [
             Vec4::new(
                 1.0 / self.size_m,
@@ -177,6 +243,8 @@ impl NoisePuddles {
                 self.level.unwrap_or(-1.0),
             ),
             Vec4::new(1.0, f32::from(u8::from(self.height_map)), self.drenched, self.noise),
+            ruts,
+            rut_shape,
         ]
     }
 }
@@ -211,6 +279,44 @@ mod tests {
             ..noise
         };
         assert!((volume(own, 0.0, 0.7) - volume(noise, f64::from(0.9_f32), 0.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn depth_gathers_in_ruts_and_stretches_along_them() {
+        let plain = NoisePuddles {
+            size_m: 1.0,
+            stretch: 5.0,
+            height_map: false,
+            ..default()
+        };
+        let road = NoisePuddles {
+            ruts: Some(WheelRuts {
+                direction_rad: 0.6,
+                depth: 0.8,
+                ..default()
+            }),
+            ..plain
+        };
+        // Mean depth along the rut of a lane and along the lane's middle.
+        let (sin, cos) = (0.6_f32.sin(), 0.6_f32.cos());
+        let mean = |noise: NoisePuddles, across: f64| -> f64 {
+            let along = (0..2000_u16).map(|i| f64::from(i) * 0.05 - 50.0);
+            let (sin, cos) = (f64::from(sin), f64::from(cos));
+            along
+                .map(|along| {
+                    noise.depth_m(
+                        DVec2::new(cos * across + sin * along, cos * along - sin * across),
+                        0.6,
+                        0.0,
+                    )
+                })
+                .sum::<f64>()
+                / 2000.0
+        };
+        let (rut, middle) = (mean(road, 1.0), mean(road, 1.75));
+        assert!(rut > 1e-3 && middle < 0.05 * rut, "{rut} {middle}");
+        // At a rut's bottom the map is that of the noise alone, turned.
+        assert!(mean(plain, 1.75) > 0.5 * rut);
     }
 
     #[test]
@@ -280,7 +386,27 @@ mod tests {
                     },
                 ),
             ];
-            for (name, noise) in noises {
+            let ruts = |ruts: WheelRuts| NoisePuddles {
+                ruts: Some(ruts),
+                ..default()
+            };
+            let bad_ruts = [
+                (
+                    "lane_m",
+                    ruts(WheelRuts {
+                        lane_m: bad,
+                        ..default()
+                    }),
+                ),
+                (
+                    "depth",
+                    ruts(WheelRuts {
+                        depth: bad,
+                        ..default()
+                    }),
+                ),
+            ];
+            for (name, noise) in noises.into_iter().chain(bad_ruts) {
                 let message = noise.validated().expect_err("invalid").to_string();
                 assert!(message.starts_with(name), "{message}");
             }

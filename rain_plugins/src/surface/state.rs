@@ -1,6 +1,7 @@
 //! What surfaces show of the weather this frame.
 
 use bevy::prelude::*;
+use rain_core::surface::film_wave_speed_of_mm;
 use rain_ecs::prelude::*;
 
 use super::materials::SurfaceWetting;
@@ -24,6 +25,8 @@ pub struct SurfaceState {
     pub artist: Vec4,
     /// What is set by hand.
     pub by_hand: WaterByHand,
+    /// Speed of wavelets on a film of 1 mm down a slope of sine 1. Units: m/s.
+    pub flow_m_s: f32,
     /// Where the air goes, horizontally (x, z). Units: m/s.
     pub wind_m_s: Vec2,
     /// Time of the waves: the rain clock's, from 0 to [`WAVE_PERIOD_S`]. Units: s.
@@ -50,6 +53,7 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
             state: Vec4::ZERO,
             artist: Vec4::ZERO,
             by_hand: WaterByHand::default(),
+            flow_m_s: 0.0,
             wind_m_s: Vec2::ZERO,
             time_s: 0.0,
             seconds: 0.0,
@@ -104,6 +108,8 @@ pub(super) fn follow_weather(
         weather.surfaces().properties(CLASS).texture_depth_mm as f32,
         weather.conditions().intensity_mm_h as f32,
     );
+    let manning_n = weather.surfaces().properties(CLASS).manning_n;
+    surface.flow_m_s = film_wave_speed_of_mm(manning_n) as f32;
     let artist = weather.shown_levels();
     surface.by_hand = *weather.by_hand();
     surface.artist = Vec4::new(

@@ -29,6 +29,8 @@ pub struct WaterAppearance {
     pub wave_velocity_m_s: Option<Vec2>,
     /// Multiple of the rings that drops make. Domain: [0, 4]. Default: 1.
     pub ripple_strength: f32,
+    /// Multiple of the slope of wavelets on films that run down slopes; 0: none. Domain: [0, 4]. Default: 1.
+    pub flow_strength: f32,
     /// Share of the mirrored view in reflections (where a view has one). Domain: [0, 1]. Default: 1.
     pub reflection_strength: f32,
     /// Share of the light that standing water mirrors of all that it would, sky, lamps and scene: 1 is Fresnel's.
@@ -47,6 +49,7 @@ impl Default for WaterAppearance {
             wave_length_m: 0.25,
             wave_velocity_m_s: None,
             ripple_strength: 1.0,
+            flow_strength: 1.0,
             reflection_strength: 1.0,
             puddle_reflection: 1.0,
         }
@@ -73,6 +76,7 @@ impl WaterAppearance {
             ("wave_velocity_m_s", velocity.x, -10.0, 10.0, "-10 to 10 m/s"),
             ("wave_velocity_m_s", velocity.y, -10.0, 10.0, "-10 to 10 m/s"),
             ("ripple_strength", self.ripple_strength, 0.0, 4.0, "0 to 4"),
+            ("flow_strength", self.flow_strength, 0.0, 4.0, "0 to 4"),
             ("reflection_strength", self.reflection_strength, 0.0, 1.0, "0 to 1"),
             ("puddle_reflection", self.puddle_reflection, 0.0, 1.0, "0 to 1"),
         ] {

@@ -5,6 +5,7 @@ mod cover_parity;
 mod device;
 mod far;
 mod field_parity;
+mod film_waves;
 mod hash_parity;
 mod maps;
 mod optical_depth;

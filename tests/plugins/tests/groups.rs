@@ -74,3 +74,36 @@ fn it_rains_without_wet_surfaces_and_without_cover() {
     });
     assert!(rain == 0 && cover > 0, "without near rain: {rain} rain, {cover} cover");
 }
+
+#[test]
+fn core_effects_are_on_whenever_it_rains() {
+    if !gpu::available() {
+        return;
+    }
+    // Passes recorded and meshes that got wet, with nothing but the plugins, a camera and this weather.
+    let seen = |weather: Weather| {
+        let mut app = App::new();
+        app.add_plugins((headless::plugins(), RainPlugins));
+        headless::finish(&mut app);
+        let target = target_image(&mut app, SIZE);
+        spawn_camera(&mut app, &target, true);
+        world::ground(app.world_mut());
+        app.world_mut().spawn(weather);
+        headless::step(&mut app, FRAME).expect("the renderer goes on");
+        headless::step(&mut app, std::time::Duration::from_secs(600)).expect("the renderer goes on");
+        for _ in 0..12 {
+            headless::step(&mut app, FRAME).expect("the renderer goes on");
+        }
+        let mut wet = app.world_mut().query::<&rain_plugins::surface::DryMaterial>();
+        let wet = wet.iter(app.world()).count() as u64;
+        let report = app.world().resource::<RainReport>();
+        let passes = [PassName::Cover, PassName::Rainfall, PassName::Ripples];
+        (passes.map(|pass| report.recorded_frames(pass)), wet)
+    };
+    let (passes, wet) = seen(Weather::rain(25.0));
+    assert!(
+        passes.iter().all(|frames| *frames > 0) && wet == 1,
+        "cover, drops, ripples {passes:?}; {wet} wet meshes"
+    );
+    assert_eq!(seen(Weather::rain(0.0)), ([0; 3], 0), "none while it is dry");
+}

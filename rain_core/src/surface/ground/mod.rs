@@ -31,6 +31,11 @@
 //! of puddles within 2 mm (rms), their water within 15 % of the mean, the depth at a place 0.1 mm off in the mean; cells
 //! of 0.5 m have their water wrong by most of it.
 //!
+//! Wheel ruts are narrower (half a metre wide, 12 mm deep, on a crown of 2 %): cells of 0.25 m that such a rut crosses
+//! aslant are dams in it and lose more than half of its puddles' water, while cells of 0.125 m keep every puddle, six times
+//! as long as wide and more, with 60 to 110 % of its water, at any angle. A road with ruts that does not run along the
+//! cells' rows wants [`GroundSettings::cell_m`] of 0.125 m.
+//!
 //! Each cell sees the mean conditions of its interval (default 1 s), so against advancing every tick films are up to one
 //! interval late and basins up to three; within that delay they agree to 2e-3 of what they hold even while the rain rises
 //! from 0 to 400 mm/h in four seconds, and once all has come to rest to 1e-6.
@@ -45,6 +50,8 @@ mod layers;
 mod ledger;
 mod query;
 mod run;
+#[cfg(test)]
+mod ruts_tests;
 mod scene;
 mod state;
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub struct GroundSettings {
     /// Where there is ground. Default: the bounds of the static triangles that face up.
     pub domain: Option<GroundDomain>,
     /// Side of a cell; doubled until the grid has at most `max_cells`. Units: m. Domain: [0.01, 100]. Default: 0.25,
-    /// above which puddles as wide as a car lose their shape (see the module).
+    /// above which puddles as wide as a car lose their shape; wheel ruts aslant to the cells want 0.125 (see the module).
     pub cell_m: f64,
     /// Most cells. Domain: [1, 2²⁴]. Default: 2²⁰.
     pub max_cells: usize,

@@ -14,6 +14,7 @@
     rain_standing_water, rain_refraction_shift, rain_shift_in_pixels, rain_under_water, rain_wind_slopes,
     rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_noise_puddle, rain_normal_aslant, rain_udn,
     rain_film_texel, rain_memory_of, rain_memory_share, rain_puddle_rim, rain_water_map,
+    rain_across_and_along, rain_rut_height, rain_film_wave_velocity, rain_film_wave_slope, rain_film_wavelets,
     ArtistLook, rain_artist_surface, rain_lagarde_porosity, rain_fixed_state,
 }
 #ifdef PREPASS_PIPELINE
@@ -44,6 +45,12 @@ struct Wetting {
     // x: look (0 physical, else a source's rules), y: fixed state (0 none, 1 dry .. 4 puddle), z: 1 for level faces
     // alone, w unused.
     look: vec4<f32>,
+    // Wheel ruts of noise puddles. x, y: cosine and sine of the lanes' direction, z: offset m, w: depth.
+    ruts: vec4<f32>,
+    // x: lane m, y: half track m, z: standard deviation m, w: 1 where there are any.
+    rut_shape: vec4<f32>,
+    // Flow of the mesh's own. x, y: velocity m/s, z: speed of the flow map m/s, 0 without, w: strength.
+    flow: vec4<f32>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(100) var<uniform> wetting: Wetting;
@@ -59,6 +66,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(110) var rain_near_map: texture_2d_array<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(114) var rain_wave_normals: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(115) var rain_more_wave_normals: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(116) var rain_flow_map: texture_2d<f32>;
 
 // Perceptual roughness of still water: a mirror, as far as lamps of finite size let it be one.
 const WATER_ROUGHNESS: f32 = 0.045;
@@ -153,8 +161,16 @@ fn placed_water(paint: vec4<f32>, height: f32, p: vec2<f32>) -> Placed {
         out.depth = water * wetting.paint.w;
     }
     if (wetting.noise_flags.x > 0.5) {
-        let noise = rain_puddle_noise(rain_surface.eye.xz, p, wetting.noise.xy, u32(wetting.noise.z));
-        let map = wetting.noise_flags.w * noise;
+        var eye = rain_surface.eye.xz;
+        var at = p;
+        var rut = 0.0;
+        if (wetting.rut_shape.w > 0.5) {
+            eye = rain_across_and_along(eye, wetting.ruts.xy);
+            at = rain_across_and_along(p, wetting.ruts.xy);
+            rut = rain_rut_height(eye.x - wetting.ruts.z + at.x, wetting.rut_shape.xyz, wetting.ruts.w);
+        }
+        let noise = rain_puddle_noise(eye, at, wetting.noise.xy, u32(wetting.noise.z));
+        let map = 1.0 - (1.0 - wetting.noise_flags.w * noise) * (1.0 - rut);
         let level = select(levels.z, wetting.noise.w, wetting.noise.w >= 0.0);
         let relief = select(0.0, height, wetting.noise_flags.y > 0.5);
         let puddle = rain_noise_puddle(level, map, relief, wetting.noise_flags.z);
@@ -162,6 +178,29 @@ fn placed_water(paint: vec4<f32>, height: f32, p: vec2<f32>) -> Placed {
         out.water = max(out.water, puddle.y);
         out.film = puddle.z;
     }
+    return out;
+}
+
+// Slopes of the wavelets on the film that runs over `normal`, and the variance of those too small to be seen. `film` is the
+// share of the point under a film, `own` the mesh's flow, m/s.
+fn running_film(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, normal: vec3<f32>, film: f32, own: vec2<f32>) -> WaterSurface {
+    var out: WaterSurface;
+    let place = rain_surface.water.place;
+    // Above the texture, mm; steep faces have films too thin for waves.
+    let above = max(rain_surface.state.y - rain_surface.state.z, 0.0) * film * smoothstep(0.5, 0.8, normal.y);
+    let strength = place.z * wetting.flow.w;
+    if (strength * above <= 0.0) {
+        return out;
+    }
+    let velocity = rain_film_wave_velocity(normal, above, place.w) + own;
+    let steep = strength * rain_film_wave_slope(above, length(velocity));
+    if (steep < 1e-4) {
+        return out;
+    }
+    let footprint = sqrt(max(dot(ddx, ddx), dot(ddy, ddy)));
+    let waves = rain_film_wavelets(rain_surface.eye.xz, p.xz, rain_surface.eye.w, velocity, footprint);
+    out.slope = steep * waves.xy;
+    out.variance = steep * steep * waves.z;
     return out;
 }
 
@@ -208,6 +247,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     var paint = vec4<f32>(1.0);
     // Height of the material's relief, 1 at its top.
     var height = 0.0;
+    var own_flow = wetting.flow.xy;
 #ifdef VERTEX_COLORS
     if (wetting.paint.x > 0.5 && wetting.paint.x < 1.5) {
         paint = in.color;
@@ -217,6 +257,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 #ifdef VERTEX_UVS_A
     if (wetting.paint.x > 1.5) {
         paint = textureSample(rain_painted, rain_sampler, in.uv);
+    }
+    if (wetting.flow.z > 0.0) {
+        own_flow += wetting.flow.z * (2.0 * textureSample(rain_flow_map, rain_sampler, in.uv).xy - 1.0);
     }
     if (wetting.paint_flags.y + wetting.noise_flags.y > 0.5) {
         height = 1.0 - textureSample(depth_map_texture, depth_map_sampler, in.uv).r;
@@ -278,7 +321,10 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     rough = min(pbr.material.perceptual_roughness, rough);
     // Reflections: a film follows the road's grain, standing water does not.
     let water = water_surface(p, ddx, ddy, depth, exposure * placed.ripples);
-    let flat = normalize(mix(pbr.N, normal, 0.75 * film));
+    let running = running_film(p, ddx, ddy, normal, wet.y * (1.0 - puddle), own_flow);
+    let tilt = vec3<f32>(running.slope.x, 0.0, running.slope.y);
+    rough = pow(pow(rough, 4.0) + running.variance, 0.25);
+    let flat = normalize(mix(pbr.N, normal, 0.75 * film) - tilt);
     let surface = normalize(vec3<f32>(-water.slope.x, 1.0, -water.slope.y));
     pbr.N = normalize(mix(flat, surface, puddle));
     // Slopes too small to be seen widen the mirror: alpha² grows by their variance, the sum of both axes.
@@ -296,7 +342,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         let polished = max(1.0 - by_rules.gloss, puddle * pow(mirror, 0.25));
         pbr.material.perceptual_roughness = clamp(polished, WATER_ROUGHNESS, 1.0);
         pbr.material.reflectance = sqrt(by_rules.normal_reflectance / 0.16);
-        pbr.N = normalize(mix(grain, surface, puddle));
+        pbr.N = normalize(mix(normalize(grain - tilt), surface, puddle));
     }
     // Both ends of Fresnel's curve go with the square of this.
     let shine = mix(1.0, rain_surface.water.more_map.w, puddle);
