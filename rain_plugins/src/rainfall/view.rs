@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use bevy::math::Vec4;
+use bevy::math::{DVec2, Vec4};
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
-use rain_core::rainfall::{Container, RainViewVolume, quality_for_budget};
+use rain_core::rainfall::areas::AreaField;
+use rain_core::rainfall::{
+    Container, FADE_END, LEAD_CAP_M, LocalRain, RANGE_CAP_M, RainViewVolume, RateLadder, quality_for_budget,
+};
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
 
@@ -120,6 +123,13 @@ impl RainViewFrame {
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SoftwareAdapter(pub(crate) bool);
 
+/// Rates and spectra under rain areas; their memory is used again.
+#[derive(Default)]
+pub(super) struct LocalSpectra {
+    field: AreaField,
+    ladder: Option<RateLadder>,
+}
+
 /// Near rain: fills the containers of all [`RainView`]s.
 pub struct RainfallPlugin;
 
@@ -143,6 +153,8 @@ fn fill_containers(
     software: Res<SoftwareAdapter>,
     report: Res<RainReport>,
     air: Res<AirAroundView>,
+    areas: Option<Res<RainAreas>>,
+    mut local: Local<LocalSpectra>,
     mut errors: MessageWriter<RainConfigError>,
     mut views: Query<(
         Entity,
@@ -157,6 +169,20 @@ fn fill_containers(
     // Seconds since the last tick: frames lie between ticks.
     let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
     let now = clock.now_s() + since_tick;
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    let LocalSpectra { field: rates, ladder } = &mut *local;
+    let uneven = areas.map(|areas| {
+        areas.field_after(since_tick, rates);
+        let ladder = match ladder.take() {
+            Some(old) if old.distribution() == field.distribution() => ladder.insert(old),
+            _ => ladder.insert(RateLadder::new(field.distribution())),
+        };
+        LocalRain {
+            areas: rates,
+            ladder,
+            weather_mm_h: areas.weather_mm_h(),
+        }
+    });
     let mut any = false;
     for (entity, view, camera, projection, transform, mut motion, mut frame) in &mut views {
         any = true;
@@ -173,11 +199,18 @@ fn fill_containers(
         }
         let settings = frame.settings;
         let size = camera.physical_viewport_size().unwrap_or_default();
+        // The heaviest rain that the view's drops may be in.
+        let spectrum = uneven.as_ref().map_or(*field.spectrum(), |local| {
+            let eye = position.as_dvec3();
+            let reach = FADE_END * RANGE_CAP_M + LEAD_CAP_M;
+            let rates = local.areas.rates_within(DVec2::new(eye.x, eye.z), reach, local.weather_mm_h);
+            field.spectrum_at(rates[1])
+        });
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
         } else if !settings.enabled || settings.streak_budget == Some(0) {
             Some(SkipReason::Disabled)
-        } else if !field.is_raining() {
+        } else if spectrum.intensity_mm_h <= 0.0 {
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_)) {
             Some(SkipReason::Unsupported)
@@ -195,7 +228,7 @@ fn fill_containers(
         let budget = settings
             .streak_budget
             .unwrap_or(if software.0 { 30_000 } else { 100_000 });
-        let target = quality_for_budget(field.spectrum(), &volume, f64::from(budget)).max(1e-6);
+        let target = quality_for_budget(&spectrum, &volume, f64::from(budget)).max(1e-6);
         let kappa = match frame.kappa {
             // Low-passed while the view runs; at once after a pause, when nobody sees the jump.
             Some((kappa, then)) if (0.0..0.5).contains(&(now - then)) => {
@@ -210,13 +243,14 @@ fn fill_containers(
         let field_motion = field.motion_after(since_tick);
         // The budget is a mean; twice it is the hard bound on memory.
         let complete = Arc::get_mut(&mut container).is_some_and(|c| {
-            c.fill(
+            c.fill_local(
                 seed.0,
-                field.spectrum(),
+                &spectrum,
                 &field_motion,
                 &volume,
                 kappa,
                 2 * budget as usize + 1024,
+                uneven.as_ref(),
             )
         });
         if !complete {

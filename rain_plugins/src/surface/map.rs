@@ -1,6 +1,8 @@
 //! The water map around the view: the ground's films and pores, finer, with tracks and the edges of what covers now.
 
+use bevy::math::DVec2;
 use bevy::prelude::*;
+use rain_core::rainfall::areas::{AreaField, AreaFieldF32};
 use rain_core::surface::ground::Ground;
 use rain_core::weather::ColumnRules;
 use rain_ecs::prelude::*;
@@ -47,6 +49,7 @@ pub(crate) struct MapHandover {
 #[derive(Resource, Debug)]
 pub struct GroundMap {
     map: WaterMap,
+    settings: WaterMapSettings,
     /// Build, first cell and number of cells that it knows, and whether all their exposure was known.
     ground: Option<(u64, UVec2, UVec2, bool)>,
     /// Time and fallen rain (mm) that it has seen.
@@ -75,9 +78,11 @@ pub(super) fn create_map(mut commands: Commands, settings: Res<GroundMapSettings
     match WaterMap::new(&settings.map) {
         Ok(map) => commands.insert_resource(GroundMap {
             map,
+            settings: settings.map,
             ground: None,
             seen: None,
             handover: MapHandover::default(),
+            areas: Default::default(),
         }),
         Err(error) => error!("no water map: {error}"),
     }
@@ -108,6 +113,7 @@ pub(super) fn follow_map(
     ground: Option<Res<SurfaceGround>>,
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
+    areas: Option<Res<RainAreas>>,
     mut presses: Option<ResMut<FilmPresses>>,
     views: Query<(&Camera, &GlobalTransform), With<RainView>>,
 ) {
@@ -148,7 +154,18 @@ pub(super) fn follow_map(
     }
     let now = (clock.now_ns(), state.rain_mm());
     let (before_ns, before_mm) = this.seen.replace(now).unwrap_or(now);
-    let rain_mm = now.1 - before_mm;
+    let time_s = now.0.saturating_sub(before_ns) as f64 * 1e-9;
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    let middle = DVec2::new(f64::from(eye.x), f64::from(eye.z));
+    // Half a diagonal of the coarsest level, and what it may lie off the eye.
+    let settings = &this.settings;
+    let reach = f64::from(settings.texels) * settings.level_cell_m(settings.levels as usize - 1);
+    // The heaviest rain on the map, in the middle of the time that has passed.
+    let heaviest = areas.map(|areas| {
+        areas.field_after(-0.5 * time_s, &mut this.areas.0);
+        this.areas.0.rates_within(middle, reach, areas.weather_mm_h())[1]
+    });
+    let rain_mm = heaviest.map_or(now.1 - before_mm, |rate| rate * time_s / 3600.0);
     let unseen = now.0.saturating_sub(before_ns) > UNSEEN_NS && rain_mm > 0.0;
     if now.0 < before_ns || rain_mm < 0.0 || unseen {
         this.map.forget();
@@ -174,7 +191,6 @@ pub(super) fn follow_map(
     }
     this.ground = Some(ground_now);
     this.map.follow([eye.x, eye.z].map(f64::from));
-    let time_s = now.0.saturating_sub(before_ns) as f64 * 1e-9;
     let evaporation_mm = state.evaporation_mm_h().max(0.0) * time_s / 3600.0;
     // The weather has been validated before it became state.
     let _ = this
@@ -189,6 +205,14 @@ pub(super) fn follow_map(
             this.map.take(&mut this.handover.frame, |x, z| {
                 ground.cell_water((first.y + z) as usize * columns + (first.x + x) as usize)
             });
+            if let (Some(areas), Some(heaviest)) = (areas, heaviest) {
+                let origin = this.handover.frame.origin_m();
+                let (field, packed) = &mut this.areas;
+                if !field.pack(DVec2::new(origin.x, origin.z), reach, packed) {
+                    warn_once!("more rain areas are near the view than the water map shows; the last are left out of it");
+                }
+                this.handover.frame.set_areas(packed, areas.weather_mm_h(), heaviest);
+            }
             this.handover.wanted = true;
         }
     }

@@ -8,6 +8,7 @@ mod field_parity;
 mod hash_parity;
 mod maps;
 mod optical_depth;
+mod rain_areas;
 mod reflection;
 mod ring_layers;
 mod shader_functions;
