@@ -158,10 +158,7 @@ fn sample(
         rain_mm_h: weather.conditions().intensity_mm_h,
         visibility_m: field.map_or(f64::NAN, |field| {
             let spectrum = areas.map_or(*field.spectrum(), |areas| field.spectrum_at(areas.outside_mm_h()));
-            visibility_m(
-                extinction_per_m(&spectrum, EXTINCTION_EFFICIENCY),
-                KOSCHMIEDER_CONTRAST,
-            )
+            visibility_m(extinction_per_m(&spectrum, EXTINCTION_EFFICIENCY), KOSCHMIEDER_CONTRAST)
         }),
         wetness: SurfaceClass::ALL.map(|class| weather.wetness(class)),
         water_level_mm: SurfaceClass::ALL.map(|class| weather.water_level_mm(class)),

@@ -211,10 +211,7 @@ impl RainQueries<'_, '_> {
     fn visibility_in(&self, rate_mm_h: Option<f64>) -> f64 {
         self.field.as_ref().map_or(MAX_VISIBILITY_M, |field| {
             let spectrum = rate_mm_h.map_or(*field.spectrum(), |rate| field.spectrum_at(rate));
-            visibility_m(
-                extinction_per_m(&spectrum, EXTINCTION_EFFICIENCY),
-                KOSCHMIEDER_CONTRAST,
-            )
+            visibility_m(extinction_per_m(&spectrum, EXTINCTION_EFFICIENCY), KOSCHMIEDER_CONTRAST)
         })
     }
 

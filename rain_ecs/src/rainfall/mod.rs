@@ -14,8 +14,8 @@ use crate::clock::RainClock;
 use crate::schedule::{RainSystems, RainTick};
 use crate::snapshot::{RainfallPart, SnapshotAppExt};
 use crate::state_hash::{HashState, StateHashAppExt, StateHasher};
-use areas::RainAreas;
 use crate::weather::{ActiveWeather, WeatherState};
+use areas::RainAreas;
 
 /// What falls, everywhere: areas change only the intensity. Its spectrum is that of the heaviest rain anywhere, which
 /// without areas is the weather's.
@@ -63,7 +63,11 @@ impl RainfallField {
     /// The drop-size distribution at a rain rate (units: mm/h; held in [0, 500]).
     #[must_use]
     pub fn spectrum_at(&self, intensity_mm_h: f64) -> Spectrum {
-        let held = if intensity_mm_h > 0.0 { intensity_mm_h.min(500.0) } else { 0.0 };
+        let held = if intensity_mm_h > 0.0 {
+            intensity_mm_h.min(500.0)
+        } else {
+            0.0
+        };
         if held == self.spectrum.intensity_mm_h {
             return self.spectrum;
         }

@@ -7,7 +7,8 @@ use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
 use rain_core::rainfall::{
-    Container, FADE_END, LEAD_CAP_M, LocalRain, RANGE_CAP_M, RainViewVolume, RateLadder, quality_for_budget,
+    Container, FADE_END, Follow, FollowSettings, LEAD_CAP_M, LocalRain, RANGE_CAP_M, RainViewVolume, RateLadder,
+    quality_for_budget,
 };
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
@@ -43,6 +44,10 @@ pub struct RainView {
     pub exposure_s: f32,
     /// Distance over which streaks fade where they meet the scene (needs `DepthPrepass` and `Msaa::Off`). Units: m. Default: 0.15.
     pub soft_m: f32,
+    /// Draws only the drops in a container that follows the view: a semi-cylinder or a block. Default: none, all of the
+    /// view as far as drops are drawn singly.
+    #[reflect(ignore)]
+    pub container: Option<FollowSettings>,
 }
 
 impl Default for RainView {
@@ -53,6 +58,7 @@ impl Default for RainView {
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
             soft_m: 0.15,
+            container: None,
         }
     }
 }
@@ -86,6 +92,9 @@ impl RainView {
             f64::from(MAX_STREAK_BUDGET),
             "0 to 4000000",
         )?;
+        if let Some(container) = self.container {
+            container.validated()?;
+        }
         Ok(self)
     }
 }
@@ -105,6 +114,8 @@ pub struct RainViewFrame {
     settings: RainView,
     /// Quality κ in force and the second it was last set.
     kappa: Option<(f64, f64)>,
+    /// Where a container that was asked for stands.
+    follow: Option<Follow>,
     /// Focal length. Units: px.
     pub focal_px: f32,
     /// Motion over the exposure.
@@ -203,7 +214,9 @@ fn fill_containers(
         let spectrum = uneven.as_ref().map_or(*field.spectrum(), |local| {
             let eye = position.as_dvec3();
             let reach = FADE_END * RANGE_CAP_M + LEAD_CAP_M;
-            let rates = local.areas.rates_within(DVec2::new(eye.x, eye.z), reach, local.weather_mm_h);
+            let rates = local
+                .areas
+                .rates_within(DVec2::new(eye.x, eye.z), reach, local.weather_mm_h);
             field.spectrum_at(rates[1])
         });
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
@@ -239,6 +252,17 @@ fn fill_containers(
         };
         frame.kappa = Some((kappa, now));
 
+        let follow = settings.container.map(|region| {
+            let ahead = rotation * Vec3::NEG_Z;
+            let heading = f64::from(ahead.x).atan2(f64::from(-ahead.z));
+            let eye = position.as_dvec3();
+            let mut follow = frame.follow.unwrap_or_else(|| Follow::new(eye, heading));
+            let half_view = f64::from(1.0 / clip_from_view.x_axis.x).atan();
+            follow.follow(&region, eye, heading, half_view);
+            (follow, region)
+        });
+        frame.follow = follow.map(|(follow, _)| follow);
+
         let mut container = frame.take_spare();
         let field_motion = field.motion_after(since_tick);
         // The budget is a mean; twice it is the hard bound on memory.
@@ -251,6 +275,7 @@ fn fill_containers(
                 kappa,
                 2 * budget as usize + 1024,
                 uneven.as_ref(),
+                follow.as_ref().map(|(follow, region)| (follow, region)),
             )
         });
         if !complete {

@@ -192,7 +192,11 @@ impl Area {
                 wrong(field, shown(value), allowed)
             }
             Err(AreaError::Config(error)) => wrong("path", error.to_string(), "times that rise"),
-            Err(error) => wrong("shape", error.to_string(), "a polygon of 3 to 64 corners that does not cross itself"),
+            Err(error) => wrong(
+                "shape",
+                error.to_string(),
+                "a polygon of 3 to 64 corners that does not cross itself",
+            ),
         }
     }
 }

@@ -23,8 +23,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-pub use super::captures::{Captures, RunUp};
 use super::areas::RainAreas;
+pub use super::captures::{Captures, RunUp};
 use super::expectation::Expectation;
 use super::weather::Weather;
 use crate::surface::{WaterAppearance, WetLook};

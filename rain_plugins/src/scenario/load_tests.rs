@@ -303,7 +303,12 @@ fn values_out_of_domain_name_the_field() {
         ("time_s: 120", "time_s: 0", "weather.keys[1].time_s", "later than"),
         ("radius_m: 60", "radius_m: 0", "areas.list[0].shape", "0.1 to 1e6 m"),
         ("Rate(80)", "Rate(501)", "areas.list[0].rain", "0 to 500 mm/h"),
-        ("(4, 0), (4, 4)", "(4, 4), (4, 0)", "areas.list[1].shape", "does not cross itself"),
+        (
+            "(4, 0), (4, 4)",
+            "(4, 4), (4, 0)",
+            "areas.list[1].shape",
+            "does not cross itself",
+        ),
         ("outside: 0.5", "outside: 2", "areas.outside", "0 to 1"),
         (
             "wind_m_s: (1, 0, 0)",

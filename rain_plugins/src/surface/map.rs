@@ -55,6 +55,8 @@ pub struct GroundMap {
     /// Time and fallen rain (mm) that it has seen.
     seen: Option<(u64, f64)>,
     pub(crate) handover: MapHandover,
+    /// The rain areas around the view; their memory is used again.
+    areas: (AreaField, AreaFieldF32),
 }
 
 impl GroundMap {
@@ -209,7 +211,9 @@ pub(super) fn follow_map(
                 let origin = this.handover.frame.origin_m();
                 let (field, packed) = &mut this.areas;
                 if !field.pack(DVec2::new(origin.x, origin.z), reach, packed) {
-                    warn_once!("more rain areas are near the view than the water map shows; the last are left out of it");
+                    warn_once!(
+                        "more rain areas are near the view than the water map shows; the last are left out of it"
+                    );
                 }
                 this.handover.frame.set_areas(packed, areas.weather_mm_h(), heaviest);
             }

@@ -99,7 +99,7 @@ pub fn ellipse_distance_f32(p: [f32; 2], radii_m: [f32; 2]) -> f32 {
 /// The two points whose tangents meet in `p` (m), that of the smaller angle parameter first; none from inside or on the
 /// ellipse.
 ///
-/// Error: 1e-12 of the larger radius: each point is on the ellipse and its tangent passes through `p`.
+/// Error: 1e-11 of the larger radius: each point is on the ellipse and its tangent passes through `p`.
 #[must_use]
 pub fn ellipse_tangents(p: DVec2, radii_m: DVec2) -> Option<[DVec2; 2]> {
     let u = p / radii_m;

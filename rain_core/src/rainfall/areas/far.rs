@@ -65,7 +65,7 @@ fn bearing(direction: DVec2, ahead: DVec2) -> f64 {
 /// The lateral lines of the view are cut with the ellipse; the sight is the overlap of the view with the interval between
 /// the two tangents. Unlike a test of the nearest point alone this misses no area that is in view.
 ///
-/// Error: 1e-11 of the radii and the distance: no point of the area in sight is outside the container, and each side of
+/// Error: 1e-7 of the radii and the distance: no point of the area in sight is outside the container, and each side of
 /// the container touches one.
 #[must_use]
 pub fn far_fit(view: &FarView, centre_m: DVec2, radii_m: DVec2, heading_rad: f64) -> Option<FarFit> {

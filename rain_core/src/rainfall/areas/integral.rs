@@ -26,8 +26,8 @@ impl AreaField {
     /// [1e-6, 1]) of the heaviest rain, 12 halvings and half a million pieces at most: a tolerance of 0.05 takes some ten
     /// thousand pieces for an edge of 20 m. Pieces under an edge are integrated by 4 × 4 points.
     ///
-    /// Error: never beyond its bound, which the pieces' least and greatest rates give; with a tolerance of 0.05 a thousandth
-    /// of what falls.
+    /// Error: never beyond its bound, which the pieces' least and greatest rates give; 1e-3 of what falls with a tolerance of
+    /// 0.05.
     #[must_use]
     pub fn integral(&self, low_m: DVec2, high_m: DVec2, weather_mm_h: f64, tolerance: f64) -> GroundIntegral {
         let mut sum = GroundIntegral::default();

@@ -75,7 +75,7 @@ impl PlacedArea {
     /// The outline as a closed line of points (world x, z), `points` of them (3 at least) for a round one; none where it is
     /// unbounded. Units: m.
     ///
-    /// Error: 1e-12 of the radii: on the outline.
+    /// Error: 1e-9 of the radii: on the outline.
     #[must_use]
     pub fn outline_m(&self, points: usize) -> Vec<DVec2> {
         let points = points.clamp(3, 100_000);

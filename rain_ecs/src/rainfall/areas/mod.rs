@@ -15,7 +15,6 @@ use bevy_ecs::prelude::*;
 
 pub use components::{RainArea, RainAreaRefused, RainOutside};
 pub use state::RainAreas;
-pub(crate) use state::UnderAreas;
 
 use crate::schedule::{RainSystems, RainTick};
 use crate::snapshot::SnapshotAppExt;
