@@ -56,13 +56,13 @@ fn the_far_container_holds_the_area_in_sight_and_touches_it() {
             for p in sight {
                 let from = p - fit.anchor_m;
                 let (across, depth) = (fit.towards.perp().dot(from), fit.towards.dot(from));
-                let room = 1e-7 * (radii.max_element() + fit.distance_m);
+                let bound = 1e-7 * (radii.max_element() + fit.distance_m);
                 assert!(
-                    across >= fit.across_m[0] - room && across <= fit.across_m[1] + room,
+                    across >= fit.across_m[0] - bound && across <= fit.across_m[1] + bound,
                     "{eye} {p}: {across} {fit:?}"
                 );
                 assert!(
-                    depth >= -room && depth <= fit.depth_m + room,
+                    depth >= -bound && depth <= fit.depth_m + bound,
                     "{eye} {p}: {depth} {fit:?}"
                 );
                 (least, most, deep) = (least.min(across), most.max(across), deep.max(depth));
