@@ -91,7 +91,7 @@ pub(super) fn follow_weather(
     let eye = surface.anchor.as_dvec3();
     let rain_mm_h = areas.map_or(weather.conditions().intensity_mm_h, |areas| areas.rate_at(eye));
     let wet_ground = ground.is_some_and(|ground| ground.ground().is_some_and(|ground| !ground.is_dry()));
-    *after_areas = (areas.is_some() || *after_areas) && (wet_ground || areas.is_some());
+    *after_areas = areas.is_some() || (*after_areas && wet_ground);
     // Soils stay damp for days; what is shown is the class below.
     surface.wet = areas.is_some_and(|areas| areas.highest_mm_h() > 0.0)
         || (*after_areas && wet_ground)
