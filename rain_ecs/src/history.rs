@@ -11,6 +11,7 @@ use rain_core::weather::SurfaceClass;
 
 use crate::clock::RainClock;
 use crate::rainfall::RainfallField;
+use crate::rainfall::areas::RainAreas;
 use crate::schedule::{RainSystems, RainTick};
 use crate::surface::SurfaceGround;
 use crate::weather::{ActiveWeather, WeatherState};
@@ -22,7 +23,7 @@ pub struct HistorySample {
     pub time_s: f64,
     /// Rain rate, mean of the tick. Units: mm/h.
     pub rain_mm_h: f64,
-    /// How far something dark can be told from the horizon through the rain (Koschmieder). Units: m.
+    /// How far something dark can be told from the horizon through the rain outside all areas (Koschmieder). Units: m.
     pub visibility_m: f64,
     /// By class, in the order of [`SurfaceClass::ALL`]: see [`WeatherState::wetness`]. Units: none. Domain: [0, 1].
     pub wetness: [f64; SurfaceClass::COUNT],
@@ -140,6 +141,7 @@ fn sample(
     active: Option<Res<ActiveWeather>>,
     weather: Query<&WeatherState>,
     field: Option<Res<RainfallField>>,
+    areas: Option<Res<RainAreas>>,
     ground: Option<Res<SurfaceGround>>,
 ) {
     let now_s = clock.now_s();
@@ -155,10 +157,8 @@ fn sample(
         time_s: now_s,
         rain_mm_h: weather.conditions().intensity_mm_h,
         visibility_m: field.map_or(f64::NAN, |field| {
-            visibility_m(
-                extinction_per_m(field.spectrum(), EXTINCTION_EFFICIENCY),
-                KOSCHMIEDER_CONTRAST,
-            )
+            let spectrum = areas.map_or(*field.spectrum(), |areas| field.spectrum_at(areas.outside_mm_h()));
+            visibility_m(extinction_per_m(&spectrum, EXTINCTION_EFFICIENCY), KOSCHMIEDER_CONTRAST)
         }),
         wetness: SurfaceClass::ALL.map(|class| weather.wetness(class)),
         water_level_mm: SurfaceClass::ALL.map(|class| weather.water_level_mm(class)),

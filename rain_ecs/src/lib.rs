@@ -36,6 +36,7 @@ pub use cover::{CoverField, CoverFieldPlugin};
 pub use error::RainConfigError;
 pub use history::{RainHistory, RainHistoryPlugin};
 pub use queries::RainQueries;
+pub use rainfall::areas::{RainArea, RainAreas, RainAreasPlugin};
 pub use rainfall::{RainfallField, RainfallFieldPlugin};
 pub use schedule::{RainSystems, RainTick};
 pub use seed::RainSeed;
@@ -53,6 +54,7 @@ pub mod prelude {
     pub use crate::error::RainConfigError;
     pub use crate::history::{HistorySample, RainHistory, RainHistoryPlugin};
     pub use crate::queries::{RainQueries, SoundWetness, SurfaceSound};
+    pub use crate::rainfall::areas::{RainArea, RainAreaRefused, RainAreas, RainAreasPlugin, RainOutside};
     pub use crate::rainfall::{RainfallField, RainfallFieldPlugin};
     pub use crate::schedule::{RainSystems, RainTick};
     pub use crate::seed::RainSeed;
@@ -68,6 +70,7 @@ pub mod prelude {
         WeatherState, WeatherTimeline,
     };
     pub use rain_core::rainfall::Distribution;
+    pub use rain_core::rainfall::areas::{AreaFade, AreaKey, AreaMotion, AreaRain, AreaSettings, AreaShape};
     pub use rain_core::weather::{
         ArtistSettings, RainType, RainTypes, SurfaceClass, Timeline, WeatherConditions, WeatherPreset,
     };
@@ -90,6 +93,7 @@ impl Plugin for RainEcsPlugin {
                 clock: self.clock.clone(),
             },
             WeatherPlugin,
+            RainAreasPlugin,
             RainfallFieldPlugin,
             CoverFieldPlugin,
             SurfaceGroundPlugin,

@@ -3,7 +3,9 @@
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 use bevy_math::DVec3;
-use rain_core::haze::{EXTINCTION_EFFICIENCY, KOSCHMIEDER_CONTRAST, MAX_VISIBILITY_M, extinction_per_m, visibility_m};
+use rain_core::haze::{
+    EXTINCTION_EFFICIENCY, KOSCHMIEDER_CONTRAST, MAX_VISIBILITY_M, extinction_per_m, transmittance, visibility_m,
+};
 use rain_core::surface::SurfaceState;
 use rain_core::surface::ground::{GroundLayer, WaterAt};
 use rain_core::weather::{SurfaceClass, SurfaceProperties};
@@ -11,6 +13,7 @@ use rain_core::wheels::{GroundWater, Tyre, ground_friction};
 
 use crate::cover::CoverField;
 use crate::rainfall::RainfallField;
+use crate::rainfall::areas::RainAreas;
 use crate::surface::SurfaceGround;
 use crate::weather::{ActiveWeather, WeatherState};
 
@@ -50,6 +53,7 @@ pub struct RainQueries<'w, 's> {
     surface: Option<Res<'w, SurfaceGround>>,
     cover: Option<Res<'w, CoverField>>,
     field: Option<Res<'w, RainfallField>>,
+    areas: Option<Res<'w, RainAreas>>,
     active: Option<Res<'w, ActiveWeather>>,
     weather: Query<'w, 's, &'static WeatherState>,
 }
@@ -176,15 +180,56 @@ impl RainQueries<'_, '_> {
         }
     }
 
-    /// How far something dark can be told from the horizon through the rain (Koschmieder). Units: m. 1e9 when dry.
+    /// Rain rate in the open at a place, rain areas included; times [`RainQueries::exposed_at`] it is what reaches the
+    /// place. Units: mm/h. In [0, 500].
+    #[must_use]
+    pub fn rain_at(&self, place: impl Into<DVec3>) -> f64 {
+        let place = place.into();
+        match (&self.areas, self.weather()) {
+            _ if !place.is_finite() => 0.0,
+            (Some(areas), _) => areas.rate_at(place),
+            (None, Some(weather)) => weather.conditions().intensity_mm_h,
+            (None, None) => 0.0,
+        }
+    }
+
+    /// How far something dark can be told from the horizon through the rain outside all areas (Koschmieder). Units: m.
+    /// 1e9 when dry.
     #[must_use]
     pub fn visibility_m(&self) -> f64 {
+        let rate = self.areas.as_ref().filter(|areas| !areas.is_uniform());
+        self.visibility_in(rate.map(|areas| areas.outside_mm_h()))
+    }
+
+    /// [`RainQueries::visibility_m`] in rain as it falls at a place.
+    #[must_use]
+    pub fn visibility_at(&self, place: impl Into<DVec3>) -> f64 {
+        self.visibility_in(Some(self.rain_at(place)))
+    }
+
+    /// In rain of this rate, or of the field's.
+    fn visibility_in(&self, rate_mm_h: Option<f64>) -> f64 {
         self.field.as_ref().map_or(MAX_VISIBILITY_M, |field| {
-            visibility_m(
-                extinction_per_m(field.spectrum(), EXTINCTION_EFFICIENCY),
-                KOSCHMIEDER_CONTRAST,
-            )
+            let spectrum = rate_mm_h.map_or(*field.spectrum(), |rate| field.spectrum_at(rate));
+            visibility_m(extinction_per_m(&spectrum, EXTINCTION_EFFICIENCY), KOSCHMIEDER_CONTRAST)
         })
+    }
+
+    /// Share of the light that passes through the rain between two places, areas counted along the way. Units: none. In
+    /// [0, 1]; 1 for places that are not finite.
+    #[must_use]
+    pub fn seen_through(&self, from: impl Into<DVec3>, to: impl Into<DVec3>) -> f64 {
+        let (from, to) = (from.into(), to.into());
+        let Some(field) = &self.field else { return 1.0 };
+        if !(from.is_finite() && to.is_finite()) {
+            return 1.0;
+        }
+        let of = |rate: f64| extinction_per_m(&field.spectrum_at(rate), EXTINCTION_EFFICIENCY);
+        let depth = match &self.areas {
+            Some(areas) if !areas.is_uniform() => areas.field().along(from, to, areas.weather_mm_h(), of),
+            _ => extinction_per_m(field.spectrum(), EXTINCTION_EFFICIENCY) * from.distance(to),
+        };
+        transmittance(depth)
     }
 
     fn with_properties(&self, class: SurfaceClass, of: impl Fn(&SurfaceProperties) -> f64) -> f64 {

@@ -1,5 +1,6 @@
 //! Rain as components and systems, in apps without a renderer.
 
+mod areas;
 mod common;
 mod cover;
 mod foot;

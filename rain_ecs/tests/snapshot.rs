@@ -39,6 +39,7 @@ fn a_restored_world_goes_on_bit_for_bit() {
             "clock",
             "cover",
             "dynamic_wetness",
+            "rain_areas",
             "rainfall",
             "seed",
             "surface",
@@ -75,7 +76,7 @@ fn a_restored_world_goes_on_bit_for_bit() {
             "after {seconds} s more"
         );
     }
-    assert_eq!(save(&first).parts().count(), 7);
+    assert_eq!(save(&first).parts().count(), 8);
     let ledger = fresh.world().resource::<SurfaceGround>().ledger();
     assert!(ledger.residual_relative < 1e-12 && ledger.rain_m3 > 0.1);
 }

@@ -43,7 +43,8 @@ pub const LIBRARIES: &[Library] = library![
     "waves",
     "ring_layers",
     "water_column",
-    "water_map"
+    "water_map",
+    "rain_areas"
 ];
 
 /// A pass's own source.

@@ -4,10 +4,13 @@
 //! cells first, then each drop. How far a drop of diameter D is drawn is z_s(D) = min(κ z₁(D), cap): the level set of
 //! equal contrast, so every budget κ draws the drops that matter most.
 
+use glam::swizzles::Vec3Swizzles;
 use glam::{DVec3, IVec3, Vec3, Vec4};
 
 use super::classes::{SizeClass, visible_range_m};
 use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_place, for_each_drop};
+use super::follow::{Follow, FollowSettings};
+use super::local::{CellRain, LocalRain};
 use super::spectrum::Spectrum;
 use crate::error::clamped;
 use crate::hash::unit_f32;
@@ -175,6 +178,26 @@ impl Container {
         kappa: f64,
         max_drops: usize,
     ) -> bool {
+        self.fill_local(seed, spectrum, motion, view, kappa, max_drops, None, None)
+    }
+
+    /// [`Container::fill`] where the rain rate changes from place to place: a drop is there if `local` says so at its own
+    /// place, and as far as it is inside a container that follows the view, where one is given. `None`: the rain of
+    /// `spectrum` everywhere, bit for bit as [`Container::fill`].
+    ///
+    /// Error: as [`Container::fill`]; presence 1e-2 on a drop's own soft edge.
+    #[must_use = "false says that drops were left out"]
+    pub fn fill_local(
+        &mut self,
+        seed: u64,
+        spectrum: &Spectrum,
+        motion: &FieldMotion,
+        view: &RainViewVolume,
+        kappa: f64,
+        max_drops: usize,
+        local: Option<&LocalRain>,
+        region: Option<(&Follow, &FollowSettings)>,
+    ) -> bool {
         self.records.clear();
         self.classes.clear();
         (self.cells_visited, self.cells_kept) = (0, 0);
@@ -196,12 +219,12 @@ impl Container {
                 velocity_m_s: motion.velocity_m_s[k].as_vec3(),
             };
             self.classes.push(placement);
-            if spectrum.n0_per_m3_mm > 0.0 && kappa > 0.0 {
+            if (spectrum.n0_per_m3_mm > 0.0 || local.is_some()) && kappa > 0.0 {
                 // A streak reaches back along its path relative to the eye for one exposure.
                 let relative = placement.velocity_m_s - eye_velocity.as_vec3();
                 let streak = relative.length() * view.exposure_s as f32;
                 complete &= self.fill_class(
-                    seed, k, class, spectrum, &placement, view, &range, lead, streak, max_drops,
+                    seed, k, class, spectrum, &placement, view, &range, lead, streak, max_drops, local, region,
                 );
             }
         }
@@ -220,8 +243,16 @@ impl Container {
         lead: Vec3,
         streak: f32,
         max_drops: usize,
+        local: Option<&LocalRain>,
+        region: Option<(&Follow, &FollowSettings)>,
     ) -> bool {
-        let threshold = Threshold::new(class, spectrum);
+        let everywhere = CellRain::Even(Threshold::new(class, spectrum));
+        let eye = if view.eye_m.is_finite() {
+            view.eye_m
+        } else {
+            DVec3::ZERO
+        };
+        let world = |place: Vec3| eye.xz() + place.xz().as_dvec2();
         let cell_m = class.cell_m as f32;
         let reach = (FADE_END * range.at(class.max_mm)) as f32;
         let low = (lead.min(Vec3::ZERO) - reach) / cell_m + placement.eye.fraction;
@@ -244,18 +275,39 @@ impl Container {
                     if nearest > reach {
                         continue;
                     }
+                    let rain = local.map_or(everywhere, |local| {
+                        local.within(k, world(centre), f64::from(half) * core::f64::consts::SQRT_2)
+                    });
+                    let scan_limit = match rain {
+                        CellRain::Dry => continue,
+                        CellRain::Even(threshold) => threshold.scan_limit(),
+                        CellRain::Uneven(limit) => limit,
+                    };
                     self.cells_kept += 1;
                     let key = cell_key(seed, k as u32, placement.eye.cell.wrapping_add(cell));
                     let corner = centre - half;
                     let mut full = false;
-                    for_each_drop(class, key, threshold.scan_limit(), |index, drop| {
-                        let presence = threshold.presence(&drop);
+                    for_each_drop(class, key, scan_limit, |index, drop| {
                         let position = corner + drop.position * cell_m;
+                        let presence = match (rain, local) {
+                            (CellRain::Even(threshold), _) => threshold.presence(&drop),
+                            (CellRain::Uneven(_), Some(local)) => local.presence(k, world(position), &drop),
+                            _ => 0.0,
+                        };
                         let drop_reach = (FADE_END * range.at(f64::from(drop.diameter_mm))) as f32;
                         if presence <= 0.0
                             || to_segment(position, lead) > drop_reach
                             || !inside(&view.side_planes, position, streak + 0.01)
                         {
+                            return;
+                        }
+                        let presence = match region {
+                            Some((follow, settings)) => {
+                                presence * follow.weight(settings, eye + position.as_dvec3()) as f32
+                            }
+                            None => presence,
+                        };
+                        if presence <= 0.0 {
                             return;
                         }
                         if self.records.len() >= max_drops || index > 0xFFF {

@@ -132,6 +132,21 @@ impl Threshold {
         }
     }
 
+    /// ln of the threshold at a diameter of 0, and its slope (mm⁻¹).
+    pub(super) fn ln_line(&self) -> [f32; 2] {
+        [crate::ops::lnf(self.scale), self.slope]
+    }
+
+    /// The threshold of `class` with this line.
+    pub(super) fn of_ln_line(class: &SizeClass, [ln_scale, slope]: [f32; 2]) -> Self {
+        let at = |d: f64| crate::ops::expf(ln_scale + slope * d as f32);
+        Self {
+            scale: crate::ops::expf(ln_scale),
+            slope,
+            max: at(class.min_mm).max(at(class.max_mm)),
+        }
+    }
+
     /// The rank at which a drop of this diameter is half there. Units: none.
     ///
     /// `diameter_mm` in mm, held in [0, 10]; what is not a number counts as 0.

@@ -1,19 +1,23 @@
 //! Falling rain: size spectrum, fall speed and fall from rest, shape of a drop, streaks, the frozen drop field and the
 //! container that follows a view.
 
+pub mod areas;
 mod bulk;
 mod class_scheme;
 mod class_weights;
 mod classes;
 mod column;
 mod container;
+mod detail;
 mod drop_sizes;
 mod fall;
 mod field;
 mod fit_flux;
+mod follow;
 mod gamma;
 mod impacts;
 mod incomplete_gamma;
+mod local;
 mod oscillation;
 mod renormalise;
 mod sampling;
@@ -32,15 +36,18 @@ pub use container::{
     ClassPlacement, Container, DrawRange, DropRecord, FADE_END, LEAD_CAP_M, LEAD_TIME_S, RANGE_CAP_M, RainViewVolume,
     expected_drops, quality_for_budget,
 };
+pub use detail::DetailLaw;
 pub use drop_sizes::{DropSizes, MAX_BLEND, RainKind, SizeLaw, UnknownRainKind};
 pub use fall::{
     Fall, FallState, MAX_FALL_HEIGHT_M, MAX_FALL_TIME_S, drag_stiffness, fall_f32, quadratic_fall_time_f32,
     quadratic_speed_after_f32,
 };
 pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
+pub use follow::{Follow, FollowSettings, FollowShape, heading_margin_rad};
 pub use gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};
 pub use impacts::measured_energy_j_m2_mm;
 pub(crate) use impacts::turning;
+pub use local::{LocalRain, RateLadder};
 pub use oscillation::{
     Oscillation, mode_decay_s, mode_frequency_hz, oscillating_radius_f32, phase_turns, sustained_amplitude,
 };

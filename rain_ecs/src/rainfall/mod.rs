@@ -1,5 +1,7 @@
 //! The drop field's state: what falls, how fast each size class moves, and how far it has moved.
 
+pub mod areas;
+
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::DVec3;
@@ -13,8 +15,10 @@ use crate::schedule::{RainSystems, RainTick};
 use crate::snapshot::{RainfallPart, SnapshotAppExt};
 use crate::state_hash::{HashState, StateHashAppExt, StateHasher};
 use crate::weather::{ActiveWeather, WeatherState};
+use areas::RainAreas;
 
-/// What falls, everywhere: areas change only the intensity.
+/// What falls, everywhere: areas change only the intensity. Its spectrum is that of the heaviest rain anywhere, which
+/// without areas is the weather's.
 #[derive(Resource, Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RainfallField {
@@ -50,7 +54,27 @@ impl RainfallField {
         self.spectrum.intensity_mm_h > 0.0
     }
 
-    /// The drop-size distribution in force.
+    /// The family of spectra in force.
+    #[must_use]
+    pub fn distribution(&self) -> Distribution {
+        self.distribution
+    }
+
+    /// The drop-size distribution at a rain rate (units: mm/h; held in [0, 500]).
+    #[must_use]
+    pub fn spectrum_at(&self, intensity_mm_h: f64) -> Spectrum {
+        let held = if intensity_mm_h > 0.0 {
+            intensity_mm_h.min(500.0)
+        } else {
+            0.0
+        };
+        if held == self.spectrum.intensity_mm_h {
+            return self.spectrum;
+        }
+        Spectrum::new(self.distribution, held).unwrap_or(self.spectrum)
+    }
+
+    /// The drop-size distribution of the heaviest rain anywhere.
     #[must_use]
     pub fn spectrum(&self) -> &Spectrum {
         &self.spectrum
@@ -94,10 +118,10 @@ impl RainfallField {
     }
 
     /// Takes over the weather of this tick and moves on by its length.
-    fn tick(&mut self, conditions: &WeatherConditions, seconds: f64) {
-        if conditions.intensity_mm_h != self.spectrum.intensity_mm_h || conditions.distribution != self.distribution {
+    fn tick(&mut self, conditions: &WeatherConditions, highest_mm_h: f64, seconds: f64) {
+        if highest_mm_h != self.spectrum.intensity_mm_h || conditions.distribution != self.distribution {
             // The conditions have been validated before they became state.
-            if let Ok(spectrum) = Spectrum::new(conditions.distribution, conditions.intensity_mm_h) {
+            if let Ok(spectrum) = Spectrum::new(conditions.distribution, highest_mm_h) {
                 self.spectrum = spectrum;
                 self.distribution = conditions.distribution;
                 // Dry air keeps the last slant: nothing falls that it could matter to.
@@ -131,7 +155,14 @@ pub struct RainfallFieldPlugin;
 impl Plugin for RainfallFieldPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<RainfallField>()
-            .hash_resource::<RainfallField>("rainfall")
+            .hash_with("rainfall", |world, hasher| {
+                if let Some(field) = world.get_resource::<RainfallField>() {
+                    field.hash_state(hasher);
+                }
+                if let Some(areas) = world.get_resource::<RainAreas>() {
+                    areas.hash_state(hasher);
+                }
+            })
             .snapshot_part::<RainfallPart>("rainfall")
             .add_systems(RainTick, advance_field.in_set(RainSystems::Rainfall));
     }
@@ -142,8 +173,10 @@ fn advance_field(
     clock: Res<RainClock>,
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
+    areas: Option<Res<RainAreas>>,
 ) {
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
     let conditions = state.map_or_else(WeatherConditions::default, |s| *s.conditions());
-    field.tick(&conditions, clock.current_tick_s());
+    let highest_mm_h = areas.map_or(conditions.intensity_mm_h, |areas| areas.highest_mm_h());
+    field.tick(&conditions, highest_mm_h, clock.current_tick_s());
 }

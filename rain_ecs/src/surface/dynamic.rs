@@ -11,6 +11,7 @@ use rain_core::weather::{ColumnForcing, SurfaceClass, SurfaceColumn};
 use super::material::SurfaceMaterial;
 use crate::clock::RainClock;
 use crate::cover::CoverField;
+use crate::rainfall::areas::RainAreas;
 use crate::state_hash::StateHasher;
 use crate::weather::{ActiveWeather, WeatherMode, WeatherState};
 
@@ -127,26 +128,33 @@ pub(super) fn wet_objects(
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
     cover: Option<Res<CoverField>>,
+    areas: Option<Res<RainAreas>>,
     poses: TransformHelper,
     mut objects: Query<(Entity, &mut DynamicWetness, Option<&SurfaceMaterial>)>,
 ) {
     let Some(state) = active.entity().and_then(|entity| weather.get(entity).ok()) else {
         return;
     };
-    let rain = state.conditions().intensity_mm_h;
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    let highest = areas.map_or(state.conditions().intensity_mm_h, RainAreas::highest_mm_h);
     let dt_s = clock.current_tick_s();
     for (entity, mut object, material) in &mut objects {
         // Dry and nothing falls: nothing to do.
-        if rain == 0.0 && object.wetness == 0.0 && object.column.is_dry() {
+        if highest == 0.0 && object.wetness == 0.0 && object.column.is_dry() {
             continue;
         }
-        if rain > 0.0
+        if highest > 0.0
             && let Some(cover) = &cover
             // The pose as it is set, not as it was last propagated: that depends on frames.
             && let Ok(pose) = poses.compute_global_transform(entity)
         {
             object.bypass_change_detection().see(&pose, cover);
         }
+        // Where it was seen last, to 2 cm.
+        let rain = match (areas, object.place) {
+            (Some(areas), Some(place)) => areas.rate_at(place),
+            _ => highest,
+        };
         let class = material.map_or(SurfaceClass::Roof, |material| material.0);
         let properties = state.surfaces().properties(class);
         let forcing = ColumnForcing {

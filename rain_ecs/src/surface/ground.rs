@@ -1,12 +1,13 @@
 //! The ground and its water, built from the scene and advanced with the weather.
 
 use bevy_ecs::prelude::*;
-use rain_core::surface::ground::{Ground, GroundError, GroundLedger};
+use rain_core::surface::ground::{Ground, GroundError, GroundLedger, UnevenRain};
 use rain_core::weather::ColumnForcing;
 
 use super::scene::{SurfaceScene, SurfaceSettings};
 use crate::clock::RainClock;
 use crate::cover::CoverField;
+use crate::rainfall::areas::RainAreas;
 use crate::state_hash::{HashState, StateHasher};
 use crate::weather::{ActiveWeather, WeatherState};
 
@@ -180,6 +181,7 @@ pub(super) fn advance(
     clock: Res<RainClock>,
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
+    areas: Option<Res<RainAreas>>,
     mut surface: ResMut<SurfaceGround>,
 ) {
     let Some(state) = active.entity().and_then(|entity| weather.get(entity).ok()) else {
@@ -187,12 +189,15 @@ pub(super) fn advance(
     };
     let surface = surface.bypass_change_detection();
     let Some(ground) = &mut surface.ground else { return };
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
     let forcing = ColumnForcing {
-        rain_mm_h: state.conditions().intensity_mm_h,
+        rain_mm_h: areas.map_or(state.conditions().intensity_mm_h, RainAreas::highest_mm_h),
         evaporation_mm_h: state.evaporation_mm_h().max(0.0),
     };
     let steps = u32::try_from(clock.current_tick_ns() / clock.tick_ns()).unwrap_or(u32::MAX);
-    let done = ground.advance(&forcing, clock.current_tick_s(), steps);
+    let mut local = areas.and_then(RainAreas::under);
+    let local = local.as_mut().map(|local| local as &mut dyn UnevenRain);
+    let done = ground.advance_under(&forcing, clock.current_tick_s(), steps, local);
     // The weather has been validated before it became state.
     debug_assert!(done.is_ok(), "{done:?}");
 }

@@ -127,8 +127,8 @@ impl WeatherState {
         self.surfaces.rain_mm()
     }
 
-    /// Whether it does not rain and nothing is wet, by the mode in force and by hand: what lets a scene skip all rain
-    /// work.
+    /// Whether it does not rain and nothing is wet, by the mode in force and by hand: what lets a scene without rain areas
+    /// skip all rain work.
     #[must_use]
     pub fn is_dry_and_settled(&self) -> bool {
         let WaterByHand { wetness, water_level } = self.by_hand;

@@ -2,10 +2,14 @@
 
 use std::sync::Arc;
 
-use bevy::math::Vec4;
+use bevy::math::{DVec2, Vec4};
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
-use rain_core::rainfall::{Container, RainViewVolume, quality_for_budget};
+use rain_core::rainfall::areas::AreaField;
+use rain_core::rainfall::{
+    Container, FADE_END, Follow, FollowSettings, LEAD_CAP_M, LocalRain, RANGE_CAP_M, RainViewVolume, RateLadder,
+    quality_for_budget,
+};
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
 
@@ -40,6 +44,10 @@ pub struct RainView {
     pub exposure_s: f32,
     /// Distance over which streaks fade where they meet the scene (needs `DepthPrepass` and `Msaa::Off`). Units: m. Default: 0.15.
     pub soft_m: f32,
+    /// Draws only the drops in a container that follows the view: a semi-cylinder or a block. Default: none, all of the
+    /// view as far as drops are drawn singly.
+    #[reflect(ignore)]
+    pub container: Option<FollowSettings>,
 }
 
 impl Default for RainView {
@@ -50,6 +58,7 @@ impl Default for RainView {
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
             soft_m: 0.15,
+            container: None,
         }
     }
 }
@@ -83,6 +92,9 @@ impl RainView {
             f64::from(MAX_STREAK_BUDGET),
             "0 to 4000000",
         )?;
+        if let Some(container) = self.container {
+            container.validated()?;
+        }
         Ok(self)
     }
 }
@@ -102,6 +114,8 @@ pub struct RainViewFrame {
     settings: RainView,
     /// Quality κ in force and the second it was last set.
     kappa: Option<(f64, f64)>,
+    /// Where a container that was asked for stands.
+    follow: Option<Follow>,
     /// Focal length. Units: px.
     pub focal_px: f32,
     /// Motion over the exposure.
@@ -119,6 +133,13 @@ impl RainViewFrame {
 /// Software adapters get a smaller default budget.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SoftwareAdapter(pub(crate) bool);
+
+/// Rates and spectra under rain areas; their memory is used again.
+#[derive(Default)]
+pub(super) struct LocalSpectra {
+    field: AreaField,
+    ladder: Option<RateLadder>,
+}
 
 /// Near rain: fills the containers of all [`RainView`]s.
 pub struct RainfallPlugin;
@@ -143,6 +164,8 @@ fn fill_containers(
     software: Res<SoftwareAdapter>,
     report: Res<RainReport>,
     air: Res<AirAroundView>,
+    areas: Option<Res<RainAreas>>,
+    mut local: Local<LocalSpectra>,
     mut errors: MessageWriter<RainConfigError>,
     mut views: Query<(
         Entity,
@@ -157,6 +180,20 @@ fn fill_containers(
     // Seconds since the last tick: frames lie between ticks.
     let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
     let now = clock.now_s() + since_tick;
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    let LocalSpectra { field: rates, ladder } = &mut *local;
+    let uneven = areas.map(|areas| {
+        areas.field_after(since_tick, rates);
+        let ladder = match ladder.take() {
+            Some(old) if old.distribution() == field.distribution() => ladder.insert(old),
+            _ => ladder.insert(RateLadder::new(field.distribution())),
+        };
+        LocalRain {
+            areas: rates,
+            ladder,
+            weather_mm_h: areas.weather_mm_h(),
+        }
+    });
     let mut any = false;
     for (entity, view, camera, projection, transform, mut motion, mut frame) in &mut views {
         any = true;
@@ -173,11 +210,20 @@ fn fill_containers(
         }
         let settings = frame.settings;
         let size = camera.physical_viewport_size().unwrap_or_default();
+        // The heaviest rain that the view's drops may be in.
+        let spectrum = uneven.as_ref().map_or(*field.spectrum(), |local| {
+            let eye = position.as_dvec3();
+            let reach = FADE_END * RANGE_CAP_M + LEAD_CAP_M;
+            let rates = local
+                .areas
+                .rates_within(DVec2::new(eye.x, eye.z), reach, local.weather_mm_h);
+            field.spectrum_at(rates[1])
+        });
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
         } else if !settings.enabled || settings.streak_budget == Some(0) {
             Some(SkipReason::Disabled)
-        } else if !field.is_raining() {
+        } else if spectrum.intensity_mm_h <= 0.0 {
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_)) {
             Some(SkipReason::Unsupported)
@@ -195,7 +241,7 @@ fn fill_containers(
         let budget = settings
             .streak_budget
             .unwrap_or(if software.0 { 30_000 } else { 100_000 });
-        let target = quality_for_budget(field.spectrum(), &volume, f64::from(budget)).max(1e-6);
+        let target = quality_for_budget(&spectrum, &volume, f64::from(budget)).max(1e-6);
         let kappa = match frame.kappa {
             // Low-passed while the view runs; at once after a pause, when nobody sees the jump.
             Some((kappa, then)) if (0.0..0.5).contains(&(now - then)) => {
@@ -206,17 +252,30 @@ fn fill_containers(
         };
         frame.kappa = Some((kappa, now));
 
+        let follow = settings.container.map(|region| {
+            let ahead = rotation * Vec3::NEG_Z;
+            let heading = f64::from(ahead.x).atan2(f64::from(-ahead.z));
+            let eye = position.as_dvec3();
+            let mut follow = frame.follow.unwrap_or_else(|| Follow::new(eye, heading));
+            let half_view = f64::from(1.0 / clip_from_view.x_axis.x).atan();
+            follow.follow(&region, eye, heading, half_view);
+            (follow, region)
+        });
+        frame.follow = follow.map(|(follow, _)| follow);
+
         let mut container = frame.take_spare();
         let field_motion = field.motion_after(since_tick);
         // The budget is a mean; twice it is the hard bound on memory.
         let complete = Arc::get_mut(&mut container).is_some_and(|c| {
-            c.fill(
+            c.fill_local(
                 seed.0,
-                field.spectrum(),
+                &spectrum,
                 &field_motion,
                 &volume,
                 kappa,
                 2 * budget as usize + 1024,
+                uneven.as_ref(),
+                follow.as_ref().map(|(follow, region)| (follow, region)),
             )
         });
         if !complete {

@@ -23,6 +23,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
+use super::areas::RainAreas;
 pub use super::captures::{Captures, RunUp};
 use super::expectation::Expectation;
 use super::weather::Weather;
@@ -53,6 +54,8 @@ pub struct Scenario {
     pub environment: Environment,
     /// Rain, wind and air over time.
     pub weather: Weather,
+    /// Where it rains otherwise than everywhere.
+    pub areas: RainAreas,
     /// What drives through the scene. Domain: at most 256. Default: none.
     pub vehicles: Vec<Vehicle>,
     /// Where the camera is and what it looks at.
@@ -89,6 +92,7 @@ impl Default for Scenario {
             drains: Vec::new(),
             environment: Environment::default(),
             weather: Weather::default(),
+            areas: RainAreas::default(),
             vehicles: Vec::new(),
             camera: Camera::default(),
             rain: RainSettings::default(),

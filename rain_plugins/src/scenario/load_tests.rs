@@ -45,6 +45,13 @@ Scenario(
         wetness: 0.75,
         water_level: 0.25,
     ),
+    areas: (
+        outside: 0.5,
+        list: [
+            (name: "shower", centre: (3, 7), shape: Circle(radius_m: 60), rain: Rate(80), transition_m: 12, velocity_m_s: (2, 0), start_s: 30, fade_in_s: 10),
+            (shape: Polygon(corners_m: [(0, 0), (4, 0), (4, 4), (0, 4)]), rain: Scale(0), path: [(time_s: 0), (time_s: 9, moved: (1, 2))]),
+        ],
+    ),
     water: (
         wave_strength: 0.5,
         wave_slope: 0.0625,
@@ -294,6 +301,15 @@ fn values_out_of_domain_name_the_field() {
             "0 to 500 mm/h",
         ),
         ("time_s: 120", "time_s: 0", "weather.keys[1].time_s", "later than"),
+        ("radius_m: 60", "radius_m: 0", "areas.list[0].shape", "0.1 to 1e6 m"),
+        ("Rate(80)", "Rate(501)", "areas.list[0].rain", "0 to 500 mm/h"),
+        (
+            "(4, 0), (4, 4)",
+            "(4, 4), (4, 0)",
+            "areas.list[1].shape",
+            "does not cross itself",
+        ),
+        ("outside: 0.5", "outside: 2", "areas.outside", "0 to 1"),
         (
             "wind_m_s: (1, 0, 0)",
             "wind_m_s: (1, inf, 0)",

@@ -2,7 +2,7 @@
 //!
 //! | file | concept |
 //! |---|---|
-//! | `file.rs`, `captures.rs`, `weather.rs`, `expectation.rs` | what the file may say |
+//! | `file.rs`, `captures.rs`, `weather.rs`, `areas.rs`, `expectation.rs` | what the file may say |
 //! | `load.rs`, `validate.rs`, `locate.rs`, `error.rs` | reading it, with line and column of what is wrong |
 //! | `path.rs` | vehicles and cameras as functions of time |
 //! | `headless.rs`, `stage.rs`, `session.rs` | the app, its world, its clock |
@@ -13,6 +13,7 @@
 //! | `masks.rs`, `contact.rs`, `plot.rs`, `font.rs`, `report.rs`, `output.rs` | the results |
 //! | `expect.rs`, `timeline.rs` | what was expected and what came out |
 
+pub mod areas;
 mod captures;
 pub mod contact;
 pub mod error;

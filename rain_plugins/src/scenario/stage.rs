@@ -543,6 +543,11 @@ pub(super) fn weather(app: &mut App, scenario: &Scenario) -> Result<(), RunError
     if by_hand.is_set() {
         weather.insert(by_hand);
     }
+    app.insert_resource(RainOutside(scenario.areas.outside));
+    for area in &scenario.areas.list {
+        app.world_mut()
+            .spawn((Name::new(area.name.clone()), RainArea(area.settings())));
+    }
     app.insert_resource(scenario.water.appearance());
     if let Some(mut settings) = app.world_mut().get_resource_mut::<WaveWaterSettings>() {
         settings.no_waves = !scenario.water.simulation;

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use rain_core::error::ConfigError;
 use thiserror::Error;
 
+use super::areas::MAX_AREAS;
 use super::expectation::{At, Check, Expectation, MaskCheck, Statistic};
 use super::file::{Camera, Captures, Environment, Mask, Scenario, Sky, Vehicle};
 use super::report::PASS_NAMES;
@@ -122,6 +123,12 @@ impl Scenario {
         }
         environment(&self.environment)?;
         self.check_weather()?;
+        number("areas.outside", self.areas.outside, 0.0, 1.0, "")?;
+        count("areas.list", self.areas.list.len(), MAX_AREAS, "areas")?;
+        for (i, area) in self.areas.list.iter().enumerate() {
+            area.check()
+                .or_else(|(name, value, allowed)| problem(format!("areas.list[{i}].{name}"), value, allowed))?;
+        }
         self.check_vehicles()?;
         camera(&self.camera, &self.vehicles)?;
         if self.rain.streak_budget > MAX_STREAK_BUDGET {

@@ -1,6 +1,8 @@
 //! The water map around the view: the ground's films and pores, finer, with tracks and the edges of what covers now.
 
+use bevy::math::DVec2;
 use bevy::prelude::*;
+use rain_core::rainfall::areas::{AreaField, AreaFieldF32};
 use rain_core::surface::ground::Ground;
 use rain_core::weather::ColumnRules;
 use rain_ecs::prelude::*;
@@ -48,11 +50,14 @@ pub(crate) struct MapHandover {
 #[derive(Resource, Debug)]
 pub struct GroundMap {
     map: WaterMap,
+    settings: WaterMapSettings,
     /// Build, first cell and number of cells that it knows, and whether all their exposure was known.
     ground: Option<(u64, UVec2, UVec2, bool)>,
     /// Time and fallen rain (mm) that it has seen, and whose rain that is.
     seen: Option<(u64, f64, Entity)>,
     pub(crate) handover: MapHandover,
+    /// The rain areas around the view; their memory is used again.
+    areas: (AreaField, AreaFieldF32),
 }
 
 impl GroundMap {
@@ -76,9 +81,11 @@ pub(super) fn create_map(mut commands: Commands, settings: Res<GroundMapSettings
     match WaterMap::new(&settings.map) {
         Ok(map) => commands.insert_resource(GroundMap {
             map,
+            settings: settings.map,
             ground: None,
             seen: None,
             handover: MapHandover::default(),
+            areas: Default::default(),
         }),
         Err(error) => error!("no water map: {error}"),
     }
@@ -109,6 +116,7 @@ pub(super) fn follow_map(
     ground: Option<Res<SurfaceGround>>,
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
+    areas: Option<Res<RainAreas>>,
     mut presses: Option<ResMut<FilmPresses>>,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
     mut eyes: Local<Vec<[f64; 2]>>,
@@ -152,8 +160,22 @@ pub(super) fn follow_map(
     }
     let now = (clock.now_ns(), state.rain_mm(), entity);
     let (before_ns, before_mm, before) = this.seen.replace(now).unwrap_or(now);
-    // Each weather counts its own rain.
-    let rain_mm = if entity == before { now.1 - before_mm } else { 0.0 };
+    let time_s = now.0.saturating_sub(before_ns) as f64 * 1e-9;
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    // Half a diagonal of the coarsest level, and what it may lie off the eye.
+    let settings = &this.settings;
+    let reach = f64::from(settings.texels) * settings.level_cell_m(settings.levels as usize - 1);
+    // The heaviest rain on the map, in the middle of the time that has passed.
+    let heaviest = areas.map(|areas| {
+        areas.field_after(-0.5 * time_s, &mut this.areas.0);
+        this.areas.0.rates_within(leading.into(), reach, areas.weather_mm_h())[1]
+    });
+    let rain_mm = match heaviest {
+        Some(rate) => rate * time_s / 3600.0,
+        None if entity == before => now.1 - before_mm,
+        // Each weather counts its own rain.
+        None => 0.0,
+    };
     let unseen = now.0.saturating_sub(before_ns) > UNSEEN_NS && rain_mm > 0.0;
     if now.0 < before_ns || rain_mm < 0.0 || unseen || entity != before {
         this.map.forget();
@@ -182,7 +204,6 @@ pub(super) fn follow_map(
     let active = views.iter().filter(|(_, camera, _)| camera.is_active);
     eyes.extend(active.map(|(_, _, at)| place(at)));
     this.map.follow(leading, &eyes);
-    let time_s = now.0.saturating_sub(before_ns) as f64 * 1e-9;
     let evaporation_mm = state.evaporation_mm_h().max(0.0) * time_s / 3600.0;
     // The weather has been validated before it became state.
     let _ = this
@@ -197,6 +218,16 @@ pub(super) fn follow_map(
             this.map.take(&mut this.handover.frame, |x, z| {
                 ground.cell_water((first.y + z) as usize * columns + (first.x + x) as usize)
             });
+            if let (Some(areas), Some(heaviest)) = (areas, heaviest) {
+                let origin = this.handover.frame.origin_m();
+                let (field, packed) = &mut this.areas;
+                if !field.pack(DVec2::new(origin.x, origin.z), reach, packed) {
+                    warn_once!(
+                        "more rain areas are near the view than the water map shows; the last are left out of it"
+                    );
+                }
+                this.handover.frame.set_areas(packed, areas.weather_mm_h(), heaviest);
+            }
             this.handover.wanted = true;
         }
     }

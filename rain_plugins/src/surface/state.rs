@@ -77,6 +77,9 @@ pub(super) fn follow_weather(
     noises: Query<&NoisePuddles>,
     refined: Query<&SurfaceWetting>,
     levels: Res<WaterLevels>,
+    areas: Option<Res<RainAreas>>,
+    ground: Option<Res<SurfaceGround>>,
+    mut after_areas: Local<bool>,
 ) {
     let fixed = refined.iter().any(|wetting| wetting.state.is_some());
     surface.shown = !painted.is_empty() || fixed || refined.iter().any(SurfaceWetting::is_by_hand);
@@ -96,8 +99,16 @@ pub(super) fn follow_weather(
         surface.placed = puddles || placed_water(Vec4::ZERO, painted.iter(), noises.iter());
         return;
     };
+    // Under areas the ground may be wet although the weather is dry, and stay so when they are gone.
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    let eye = surface.anchor.as_dvec3();
+    let rain_mm_h = areas.map_or(weather.conditions().intensity_mm_h, |areas| areas.rate_at(eye));
+    let wet_ground = ground.is_some_and(|ground| ground.ground().is_some_and(|ground| !ground.is_dry()));
+    *after_areas = areas.is_some() || (*after_areas && wet_ground);
     // Soils stay damp for days; what is shown is the class below.
-    surface.wet = weather.conditions().intensity_mm_h > 0.0
+    surface.wet = areas.is_some_and(|areas| areas.highest_mm_h() > 0.0)
+        || (*after_areas && wet_ground)
+        || weather.conditions().intensity_mm_h > 0.0
         || weather.wetness(CLASS) > 0.0
         || weather.water_level_mm(CLASS) > 0.0
         || levels.any_water();
@@ -106,7 +117,7 @@ pub(super) fn follow_weather(
         weather.wetness_at(CLASS, clock.interpolation()) as f32,
         weather.water_level_mm_at(CLASS, clock.interpolation()) as f32,
         weather.surfaces().properties(CLASS).texture_depth_mm as f32,
-        weather.conditions().intensity_mm_h as f32,
+        rain_mm_h as f32,
     );
     let manning_n = weather.surfaces().properties(CLASS).manning_n;
     surface.flow_m_s = film_wave_speed_of_mm(manning_n) as f32;

@@ -168,6 +168,7 @@ pub(super) fn rain_on_water(
     mut rings: ResMut<RainRings>,
     clock: Res<RainClock>,
     field: Res<RainfallField>,
+    areas: Option<Res<RainAreas>>,
     surface: Option<Res<SurfaceState>>,
     levels: Option<Res<WaterLevels>>,
     appearance: Option<Res<WaterAppearance>>,
@@ -207,7 +208,13 @@ pub(super) fn rain_on_water(
         report.skipped(PassName::Ripples, reason);
         return;
     }
-    let sizes = DropSizes::from(*field.spectrum());
+    // A tile is the same everywhere: under areas it has the rain at the eye.
+    let local = areas.as_deref().filter(|areas| !areas.is_uniform());
+    let spectrum = match (local, surface.as_ref()) {
+        (Some(areas), Some(surface)) => field.spectrum_at(areas.rate_at(surface.anchor.as_dvec3())),
+        _ => *field.spectrum(),
+    };
+    let sizes = DropSizes::from(spectrum);
     rings.now_ns = Some(now);
     if rings.source == RingSource::Drops {
         rings.tile.set_rain(&sizes);

@@ -12,6 +12,9 @@
 @group(0) @binding(5) var cover_map: texture_depth_2d;
 @group(0) @binding(6) var level_map: texture_2d<f32>;
 @group(0) @binding(7) var drawn: texture_storage_2d_array<rgba16float, write>;
+// Rain areas. Row 0: how many, share of the weather's rain where none is, the weather's rate, the rate that params.rain
+// stands for (mm/h; 0: it falls everywhere). Then each area as rain_core packs it.
+@group(0) @binding(8) var<storage, read> areas: array<vec4<f32>>;
 @group(1) @binding(0) var<uniform> stamp: WaterStamp;
 
 // Height of what is no ground, as in the map of films.
@@ -78,6 +81,42 @@ fn exposure_of(texel: vec2<i32>, at: Ground) -> f32 {
     return rain_exposure(cover_map, params.cover, p + 0.03 * at.normal, rain_exposure_bias(params.cover, at.normal));
 }
 
+// Share of the pass's rain that falls at a place (x, z) from the origin of the cover map's positions.
+fn local_share(place: vec2<f32>) -> f32 {
+    let head = areas[0];
+    if (head.w <= 0.0) {
+        return 1.0;
+    }
+    var found = vec2<f32>(head.y * head.z, 1.0);
+    var row = 1u;
+    for (var i = 0u; i < u32(head.x); i += 1u) {
+        let at = areas[row];
+        let outline = areas[row + 1u];
+        let rain = areas[row + 2u];
+        let corners = u32(rain.w);
+        let p = place - at.xy;
+        var distance = -1e30;
+        if (outline.w > 1.5) {
+            var edges = vec2<f32>(1e30, 1.0);
+            let last = areas[row + 3u + (corners - 1u) / 2u];
+            var before = select(last.xy, last.zw, corners % 2u == 0u);
+            for (var c = 0u; c < corners; c += 1u) {
+                let two = areas[row + 3u + c / 2u];
+                let corner = select(two.xy, two.zw, c % 2u == 1u);
+                edges = rain_polygon_edge(edges, p, before, corner);
+                before = corner;
+            }
+            distance = edges.y * sqrt(edges.x);
+        } else if (outline.w > 0.5) {
+            let along = vec2<f32>(dot(at.zw, p), at.z * p.y - at.w * p.x);
+            distance = rain_ellipse_distance(along, outline.xy);
+        }
+        found = rain_area_joined(found, rain.xyz, rain_area_weight(distance, outline.z), head.z);
+        row += 3u + (corners + 1u) / 2u;
+    }
+    return clamp(found.x * found.y / head.w, 0.0, 1.0);
+}
+
 fn stored(texel: vec2<i32>) -> vec2<u32> {
     return (vec2<u32>(texel) + params.offset) & vec2<u32>(params.texels - 1u);
 }
@@ -132,6 +171,9 @@ fn advance(@builtin(global_invocation_id) id: vec3<u32>) {
             column = vec3<f32>(under.rules.capacity, 0.0, column.z);
         } else if (params.time > 0.0) {
             var rain = params.rain;
+            if (rain > 0.0) {
+                rain *= local_share(params.corner + (vec2<f32>(texel) + 0.5) * params.cell);
+            }
             if (rain > 0.0) {
                 rain *= exposure_of(texel, under);
             }

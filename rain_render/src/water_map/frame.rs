@@ -1,6 +1,7 @@
 //! The work of a frame on its way to the GPU.
 
 use glam::DVec3;
+use rain_core::rainfall::areas::AreaFieldF32;
 
 use crate::gpu_types::{WaterMapParams, WaterStamp};
 
@@ -18,6 +19,8 @@ pub struct WaterMapFrame {
     pub(super) stamps: Vec<(u32, WaterStamp)>,
     /// The ground's cells, when they have changed.
     pub(super) ground: Vec<[u32; 2]>,
+    /// A head, and the rain areas behind it.
+    pub(super) areas: Vec<[f32; 4]>,
     /// World position that the cover map's positions have to be relative to. Units: m.
     pub(super) origin_m: DVec3,
 }
@@ -27,6 +30,20 @@ impl WaterMapFrame {
     #[must_use]
     pub fn origin_m(&self) -> DVec3 {
         self.origin_m
+    }
+
+    /// The rain of this frame is not the same everywhere: areas packed about [`WaterMapFrame::origin_m`], the weather's rate
+    /// and the rate that the map's rain was given for (units: mm/h; above 0). To be called after
+    /// [`super::WaterMap::take`], which forgets the areas before.
+    pub fn set_areas(&mut self, areas: &AreaFieldF32, weather_mm_h: f64, reference_mm_h: f64) {
+        self.areas.clear();
+        self.areas.push([
+            areas.areas as f32,
+            areas.outside,
+            weather_mm_h as f32,
+            reference_mm_h.max(0.0) as f32,
+        ]);
+        self.areas.extend_from_slice(&areas.rows);
     }
 
     /// Whether time passes or texels are filled; else there are only presses.
@@ -53,5 +70,7 @@ impl WaterMapFrame {
         self.seeds.clear();
         self.stamps.clear();
         self.ground.clear();
+        self.areas.clear();
+        self.areas.push([0.0; 4]);
     }
 }

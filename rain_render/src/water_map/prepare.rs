@@ -69,6 +69,7 @@ impl WaterMapPasses {
                     },
                     count: None,
                 },
+                storage_entry(8, compute, true),
             ],
         });
         let stamp_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -101,6 +102,7 @@ pub struct WaterMapGpu {
     ground: wgpu::Buffer,
     seeds: wgpu::Buffer,
     sums: wgpu::Buffer,
+    areas: wgpu::Buffer,
     drawn: wgpu::TextureView,
     pub(super) stamp_group: wgpu::BindGroup,
     pub(super) group: Option<wgpu::BindGroup>,
@@ -179,6 +181,7 @@ impl WaterMapGpu {
             ground: storage(device, "rain water map ground", 0),
             seeds: storage(device, "rain water map seeds", 0),
             sums: storage(device, "rain water stamp sums", MOST_STAMPS * 8),
+            areas: storage(device, "rain water map areas", 0),
             drawn: map.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2Array),
                 ..Default::default()
@@ -208,6 +211,7 @@ impl WaterMapGpu {
             &self.ground,
             &self.seeds,
             &self.sums,
+            &self.areas,
         ]
         .iter()
         .map(|buffer| buffer.size())
@@ -228,6 +232,7 @@ impl WaterMapGpu {
         self.boxes.clear();
         write(device, queue, &mut self.ground, "rain water map ground", &frame.ground);
         write(device, queue, &mut self.seeds, "rain water map seeds", &frame.seeds);
+        write(device, queue, &mut self.areas, "rain water map areas", &frame.areas);
         self.staging.clear();
         for level in &frame.levels {
             let mut params = *level;
@@ -273,6 +278,7 @@ impl WaterMapGpu {
             texture(input.cover_map.unwrap_or(&passes.no_cover)),
             texture(input.levels.unwrap_or(&passes.no_levels)),
             texture(&self.drawn),
+            self.areas.as_entire_binding(),
         ];
         let entries: Vec<wgpu::BindGroupEntry> = (0..)
             .zip(resources)

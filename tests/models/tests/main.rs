@@ -2,6 +2,7 @@
 //! tests, and the edges of the domain and beyond.
 
 mod allocation;
+mod areas;
 mod basins;
 mod canopy;
 mod check;

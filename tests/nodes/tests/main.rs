@@ -9,6 +9,7 @@ mod film_waves;
 mod hash_parity;
 mod maps;
 mod optical_depth;
+mod rain_areas;
 mod reflection;
 mod ring_layers;
 mod shader_functions;

@@ -1,5 +1,6 @@
 //! The plugins inside a Bevy app.
 
+mod areas;
 mod auto_paint;
 mod bad_meshes;
 mod by_hand;

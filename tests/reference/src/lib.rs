@@ -5,6 +5,7 @@
 //! tolerance, and closed forms are those of the textbooks.
 
 pub mod air;
+pub mod areas;
 pub mod artist_look;
 pub mod basins;
 pub mod canopy;

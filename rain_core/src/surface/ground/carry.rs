@@ -32,7 +32,8 @@ impl Ground {
         let k = old.m3_per_mm();
         let [nx, nz] = old.frame.cells();
         for row in 0..nz {
-            let unseen = old.pending[row % old.interval_steps as usize].rain;
+            let pending = &old.pending[row % old.interval_steps as usize];
+            let unseen = pending.rain.scaled(pending.share.0);
             for cell in row * nx..(row + 1) * nx {
                 if !old.heights[cell].is_nan() {
                     self.take_cell(old, cell, unseen.scaled(k));

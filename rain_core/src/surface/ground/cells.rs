@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::run::FULL;
 use crate::weather::store::Store;
 use crate::weather::{ColumnForcing, SurfaceClass, SurfaceColumn, SurfaceProperties};
 
@@ -76,7 +77,18 @@ pub(super) struct Interval {
     pub(super) time_s: f64,
 }
 
-/// What a result depends on, beside the interval: pores, film, τ, class and share.
+impl Interval {
+    /// Over open ground where `local`/65535 of the rain falls. The full rain is that itself.
+    pub(super) fn local_mm_h(&self, local: u16) -> f64 {
+        if local == FULL {
+            self.rain_mm_h
+        } else {
+            self.rain_mm_h * (f64::from(local) / f64::from(FULL))
+        }
+    }
+}
+
+/// What a result depends on, beside the interval: pores, film, τ, class and shares.
 type Key = [u64; 4];
 
 /// Results of columns under one interval.
@@ -107,12 +119,13 @@ impl Memo {
         }
     }
 
-    /// The column after the interval, under `share`/255 of the rain; its ledger is that of the interval.
+    /// The column after the interval, under `share`/255 of the rain that falls there, which is `local`/65535 of the
+    /// interval's; its ledger is that of the interval.
     pub(super) fn advanced(
         &mut self,
         properties: &[SurfaceProperties; SurfaceClass::COUNT],
         class: u8,
-        share: u8,
+        (share, local): (u8, u16),
         [pores, film, tau]: [f64; 3],
         interval: &Interval,
     ) -> &SurfaceColumn {
@@ -120,7 +133,7 @@ impl Memo {
             pores.to_bits(),
             film.to_bits(),
             tau.to_bits(),
-            u64::from(class) << 8 | u64::from(share),
+            u64::from(FULL - local) << 16 | u64::from(class) << 8 | u64::from(share),
         ];
         let mut hash = 0_u64;
         for word in key {
@@ -130,7 +143,7 @@ impl Memo {
         if self.used[slot] != self.round || self.keys[slot] != key {
             let mut column = SurfaceColumn::holding(pores, film, tau);
             let forcing = ColumnForcing {
-                rain_mm_h: interval.rain_mm_h * (f64::from(share) / 255.0),
+                rain_mm_h: interval.local_mm_h(local) * (f64::from(share) / 255.0),
                 evaporation_mm_h: interval.evaporation_mm_h,
             };
             let properties = &properties[usize::from(class).min(SurfaceClass::COUNT - 1)];

@@ -62,6 +62,6 @@ pub use error::GroundError;
 pub use layers::{GroundLayers, LeftOutGround};
 pub use ledger::GroundLedger;
 pub use query::{DRY_LEVEL, GroundLayer, PoolRoom, WaterAt};
-pub use run::Ground;
+pub use run::{Ground, UnevenRain};
 pub use scene::{GroundDomain, GroundScene, GroundSettings};
 pub use state::{GROUND_STATE_VERSION, GroundState};

@@ -34,7 +34,41 @@ pub(super) struct Pending {
     pub(super) idle_s: f64,
     /// Whether any of its cells may hold water.
     pub(super) wet: bool,
+    /// Mean share of `rain` on its ground cells, as it was when they were last advanced; more than the full rain is not.
+    #[serde(default = "all", skip_serializing_if = "is_all")]
+    pub(super) share: Share,
 }
+
+/// A share that is 1 until areas of rain say otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(super) struct Share(pub(super) f64);
+
+impl Default for Share {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+fn all() -> Share {
+    Share::default()
+}
+
+fn is_all(share: &Share) -> bool {
+    share.0 == 1.0
+}
+
+/// Rain that is not the same everywhere: shares of the rate that [`Ground::advance_under`] is given.
+pub trait UnevenRain {
+    /// The next questions are about so long before the end of the step. Units: s.
+    fn look_back(&mut self, ago_s: f64);
+
+    /// Share of the rain at a place (x, z). Units: none; held in [0, 1] and rounded to 1/65535.
+    fn share_at(&self, place_m: [f64; 2]) -> f64;
+}
+
+/// Steps of a local share.
+pub(super) const FULL: u16 = u16::MAX;
 
 /// What stands over the ground: the covered cells in rising order.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,6 +144,8 @@ pub struct Ground {
     pub(super) turn: u64,
     pub(super) totals: Totals,
     memo: Memo,
+    /// Shares of a row under rain that is not the same everywhere.
+    local: Vec<u16>,
     /// Cells that some level may cover.
     pub(super) wettable: Vec<u32>,
     marks: Vec<f64>,
@@ -190,6 +226,7 @@ impl Ground {
             turn: 0,
             totals: Totals::default(),
             memo: Memo::new(),
+            local: Vec::new(),
             wettable,
             film_version: 0,
             level_version: 0,
@@ -207,7 +244,7 @@ impl Ground {
     pub(super) fn pending_rain(&self) -> Store {
         let mut sum = Store::default();
         for (pending, &cells) in self.pending.iter().zip(&self.slice_cells) {
-            sum.add_store(pending.rain.scaled(f64::from(cells)));
+            sum.add_store(pending.rain.scaled(f64::from(cells) * pending.share.0));
         }
         sum
     }
@@ -227,6 +264,26 @@ impl Ground {
     /// # Errors
     /// When a rate or the time is outside its domain; then nothing changes.
     pub fn advance(&mut self, forcing: &ColumnForcing, dt_s: f64, steps: u32) -> Result<(), ConfigError> {
+        self.advance_under(forcing, dt_s, steps, None)
+    }
+
+    /// [`Ground::advance`] under rain that is not the same everywhere: `uneven` gives each cell its share of the forcing's
+    /// rain, in the middle of the interval that it is advanced by. None: the same everywhere, bit for bit.
+    ///
+    /// Until a cell is advanced the ledger has its unseen rain by the share of its row's turn before; the balance closes
+    /// all the same.
+    ///
+    /// Error: as [`Ground::advance`]; shares 1/131070.
+    ///
+    /// # Errors
+    /// When a rate or the time is outside its domain; then nothing changes.
+    pub fn advance_under(
+        &mut self,
+        forcing: &ColumnForcing,
+        dt_s: f64,
+        steps: u32,
+        mut uneven: Option<&mut dyn UnevenRain>,
+    ) -> Result<(), ConfigError> {
         const RATES: &str = "0 to 10000 mm/h";
         in_range("rain_mm_h", forcing.rain_mm_h, 0.0, MAX_SURFACE_RATE_MM_H, RATES)?;
         let evaporation = forcing.evaporation_mm_h;
@@ -255,7 +312,7 @@ impl Ground {
         self.basin_time_s += dt_s;
         self.basin_evaporation += evaporation_mm;
         for step in 0..steps.min(n) {
-            self.advance_slice(((before + step) % n) as usize)?;
+            self.advance_slice(((before + step) % n) as usize, uneven.as_deref_mut())?;
         }
         if steps >= n {
             self.inflow.gather(self.basin_steps);
@@ -324,7 +381,7 @@ impl Ground {
         }
     }
 
-    fn advance_slice(&mut self, slice: usize) -> Result<(), ConfigError> {
+    fn advance_slice(&mut self, slice: usize, uneven: Option<&mut (dyn UnevenRain + '_)>) -> Result<(), ConfigError> {
         let [nx, nz] = self.frame.cells();
         let rows = (slice..nz).step_by(self.interval_steps as usize);
         let pending = &mut self.pending[slice];
@@ -343,6 +400,7 @@ impl Ground {
             rain,
             evaporation,
             time_s,
+            share,
             ..
         } = std::mem::take(&mut self.pending[slice]);
         let interval = Interval {
@@ -352,13 +410,52 @@ impl Ground {
         };
         self.memo.begin();
         let mut wet = false;
+        let uneven = uneven.filter(|_| interval.rain_mm_h > 0.0).map(|uneven| {
+            uneven.look_back(0.5 * time_s);
+            &*uneven
+        });
+        let mut local = std::mem::take(&mut self.local);
+        let mut shares = 0;
         for row in rows {
-            wet |= self.advance_row(row * nx..(row + 1) * nx, &interval)?;
-            wet |= self.advance_cover(row, &interval);
+            let local = match uneven {
+                Some(uneven) => {
+                    shares += self.read_shares(row, uneven, &mut local);
+                    Some(local.as_slice())
+                }
+                None => None,
+            };
+            wet |= self.advance_row(row * nx..(row + 1) * nx, &interval, local)?;
+            wet |= self.advance_cover(row, &interval, local);
         }
+        self.local = local;
         self.pending[slice].wet = wet;
+        self.pending[slice].share = match uneven {
+            Some(_) => Share(shares as f64 / (f64::from(FULL) * f64::from(self.slice_cells[slice].max(1)))),
+            // Without rain nothing was asked.
+            None if interval.rain_mm_h > 0.0 => Share::default(),
+            None => share,
+        };
         self.film_version += 1;
         Ok(())
+    }
+
+    /// The shares of a row's cells; returns their sum over the cells that have a ground.
+    fn read_shares(&self, row: usize, uneven: &dyn UnevenRain, into: &mut Vec<u16>) -> u64 {
+        let [nx, _] = self.frame.cells();
+        into.clear();
+        let mut sum = 0;
+        for column in 0..nx {
+            let share = if self.heights[row * nx + column].is_nan() {
+                0
+            } else {
+                let share = uneven.share_at(self.frame.centre_m(column, row));
+                // What is not a number becomes 0.
+                (share.clamp(0.0, 1.0) * f64::from(FULL) + 0.5) as u16
+            };
+            sum += u64::from(share);
+            into.push(share);
+        }
+        sum
     }
 
     /// Lets dry soil recover.
@@ -371,25 +468,32 @@ impl Ground {
         }
     }
 
-    fn advance_row(&mut self, cells: core::ops::Range<usize>, interval: &Interval) -> Result<bool, ConfigError> {
+    fn advance_row(
+        &mut self,
+        cells: core::ops::Range<usize>,
+        interval: &Interval,
+        local: Option<&[u16]>,
+    ) -> Result<bool, ConfigError> {
         let mut wet = false;
+        let first = cells.start;
         for cell in cells {
             if self.heights[cell].is_nan() {
                 continue;
             }
             let share = self.exposure[cell];
+            let local = local.map_or(FULL, |local| local[cell - first]);
             if let Some(leaf) = self.pool_over(cell) {
-                self.pass_to_pool(cell, leaf, interval)?;
+                self.pass_to_pool(cell, leaf, interval, local)?;
                 wet = true;
                 continue;
             }
             let state = [self.cells.pores[cell], self.cells.film[cell], self.cells.tau[cell]];
-            if state == [0.0; 3] && (share == 0 || interval.rain_mm_h == 0.0) {
+            if state == [0.0; 3] && (share == 0 || local == 0 || interval.rain_mm_h == 0.0) {
                 continue;
             }
             let after = self
                 .memo
-                .advanced(&self.properties, self.class[cell], share, state, interval);
+                .advanced(&self.properties, self.class[cell], (share, local), state, interval);
             let rounding = self.cells.put(cell, after);
             let totals = &mut self.totals;
             totals.cells_rain.add_store(after.rain);
@@ -410,12 +514,12 @@ impl Ground {
     }
 
     /// A cell under a pool: film and rain join it, the pores are full, the soil takes its share from it.
-    fn pass_to_pool(&mut self, cell: usize, leaf: u32, interval: &Interval) -> Result<(), ConfigError> {
+    fn pass_to_pool(&mut self, cell: usize, leaf: u32, interval: &Interval, local: u16) -> Result<(), ConfigError> {
         let properties = &self.properties[class_of(self.class[cell]).index()];
         let (capacity, infiltration) = (properties.pore_capacity_mm, properties.infiltration);
         let k = self.m3_per_mm();
         let share = f64::from(self.exposure[cell]) / 255.0;
-        let rain = interval.rain_mm_h * share * interval.time_s / 3600.0;
+        let rain = interval.local_mm_h(local) * share * interval.time_s / 3600.0;
         let mut water = Store::new(self.cells.pores[cell]);
         water.add(self.cells.film[cell]);
         water.add(rain);
@@ -442,19 +546,23 @@ impl Ground {
     }
 
     /// What stands over a row's cells, and the rain that the slant keeps off cells with nothing over them.
-    fn advance_cover(&mut self, row: usize, interval: &Interval) -> bool {
+    fn advance_cover(&mut self, row: usize, interval: &Interval, local: Option<&[u16]>) -> bool {
         let [nx, _] = self.frame.cells();
+        let local_at = |cell: usize| local.map_or(FULL, |local| local[cell - row * nx]);
         let mut wet = false;
         let places = self.cover.row[row] as usize..self.cover.row[row + 1] as usize;
         for place in places.clone() {
-            let share = 255 - self.exposure[self.cover.cell[place] as usize];
+            let cell = self.cover.cell[place] as usize;
+            let (share, local) = (255 - self.exposure[cell], local_at(cell));
             let columns = &mut self.cover.columns;
             let state = [columns.pores[place], columns.film[place], 0.0];
-            if state == [0.0; 3] && (share == 0 || interval.rain_mm_h == 0.0) {
+            if state == [0.0; 3] && (share == 0 || local == 0 || interval.rain_mm_h == 0.0) {
                 continue;
             }
             let class = SurfaceClass::Roof.index() as u8;
-            let after = self.memo.advanced(&self.properties, class, share, state, interval);
+            let after = self
+                .memo
+                .advanced(&self.properties, class, (share, local), state, interval);
             let rounding = columns.put(place, after);
             let totals = &mut self.totals;
             totals.cells_rain.add_store(after.rain);
@@ -471,7 +579,7 @@ impl Ground {
                     next += 1;
                 } else if self.exposure[cell] < 255 && !self.heights[cell].is_nan() {
                     let share = f64::from(255 - self.exposure[cell]) / 255.0;
-                    let rain = interval.rain_mm_h * share * interval.time_s / 3600.0;
+                    let rain = interval.local_mm_h(local_at(cell)) * share * interval.time_s / 3600.0;
                     self.totals.cells_rain.add(rain);
                     self.totals.cells_gutters.add(rain);
                 }
@@ -499,6 +607,9 @@ impl Ground {
                 put(value.to_bits());
             }
             put(u64::from(pending.wet));
+            if pending.share != Share::default() {
+                put(pending.share.0.to_bits());
+            }
         }
         for value in [self.basin_time_s, self.basin_evaporation] {
             put(value.to_bits());

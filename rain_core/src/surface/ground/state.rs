@@ -165,7 +165,10 @@ impl Ground {
         for pending in &state.pending {
             let times = [pending.evaporation, pending.time_s, pending.idle_s];
             must(
-                finite(&times, 1e15) && sound(&[pending.rain]) && pending.rain.total() >= 0.0,
+                finite(&times, 1e15)
+                    && finite(&[pending.share.0], 1.0)
+                    && sound(&[pending.rain])
+                    && pending.rain.total() >= 0.0,
                 damaged("the weather that rows have not seen"),
             )?;
         }
