@@ -21,6 +21,7 @@ mod shape;
 pub mod source_forms;
 mod spectrum;
 mod streak;
+mod streak_texture;
 pub mod terminal_velocity;
 mod wind_response;
 
@@ -53,6 +54,10 @@ pub use spectrum::{Distribution, MAX_INTENSITY_MM_H, Spectrum};
 pub use streak::{
     ScreenStreak, circle_of_confusion_px, clip_to_near, contrast_gain, lamp_falloff_per_m2, streak_length_m,
     streak_opacity, streak_opacity_f32, streak_path_m, streak_peak_opacity,
+};
+pub use streak_texture::{
+    CacheOutcome, CachedStreaks, MAX_STREAK_LAYERS, OVERLAP_STEPS, PackedStreaks, STREAK_TEXTURE_VERSION, StreakCache,
+    StreakFileError, StreakLayer, StreakTexture, StreakTextureSettings, StreakTextures, TileDrop,
 };
 pub use terminal_velocity::{
     BeardAir, FallLaw, MAX_FITTED_DIAMETER_MM, StandardAtmosphere, density_factor, gunn_kinzer, terminal_velocity,

@@ -17,6 +17,7 @@ mod light;
 mod quadrature;
 mod spectrum;
 mod splash;
+mod streak_texture;
 mod surface;
 mod waves;
 mod weather;
