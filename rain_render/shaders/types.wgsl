@@ -333,3 +333,45 @@ struct WaterStamp {
     pad_a: u32,
     pad_b: u32,
 }
+
+// A streak texture's layer while it is drawn.
+struct StreakTile {
+    // Texels a side of the finest level.
+    texels: u32,
+    // First drop and number of drops.
+    first: u32,
+    drops: u32,
+    pad_a: u32,
+    // Length of every streak without its ends, texels.
+    path: f32,
+    // Opacity of a texel of value 1.
+    unit: f32,
+    // Steps of the overlap sum in one unit.
+    steps: f32,
+    pad_b: u32,
+}
+
+// A level of a layer while it is made.
+struct StreakLevel {
+    // Texels a side.
+    side: u32,
+    // Where its texels begin, and those of the level above it.
+    first: u32,
+    above: u32,
+    // Where its rows begin among the packed words, and words a row.
+    words: u32,
+    row: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
+}
+
+// A drop of a streak texture, in texels.
+struct TileDrop {
+    // Where its streak begins; y runs along the fall.
+    x: f32,
+    y: f32,
+    diameter: f32,
+    // Opacity over that of a whole drop.
+    share: f32,
+}

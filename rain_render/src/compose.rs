@@ -40,7 +40,8 @@ pub const LIBRARIES: &[Library] = library![
     "waves",
     "ring_layers",
     "water_column",
-    "water_map"
+    "water_map",
+    "streak_texture"
 ];
 
 /// A pass's own source.
@@ -67,7 +68,8 @@ pub const PASSES: &[Pass] = passes![
     "reflection_mips",
     "waves",
     "ring_layers",
-    "water_map"
+    "water_map",
+    "streak_texture"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
