@@ -1,4 +1,4 @@
-//! `rain bake`: the puddles of a scene or height field.
+//! `rain bake`: the puddles of a scene or height field; what else is made ahead is a subcommand.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -6,13 +6,13 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Args;
+use clap::{Args, Subcommand};
 use rain_core::error::in_range;
 use rain_core::surface::basins::{BakeOptions, BakeReport, Basins, Grid};
 use rain_core::surface::height_field::{HeightField, HeightFieldError, ImportLimits, MAX_COORDINATE_M};
 use serde_json::{Value, json};
 
-use crate::print;
+use crate::{print, streaks};
 
 /// Cell of a scene where none is given. Units: m.
 pub const SCENE_CELL_M: f64 = 0.25;
@@ -23,9 +23,13 @@ pub const GRID_CELL_M: f64 = 1.0;
 
 /// Arguments of `rain bake`.
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct BakeArgs {
+    #[command(subcommand)]
+    what: Option<What>,
     /// glTF or GLB scene, grey PNG, or CSV table of heights.
-    file: PathBuf,
+    #[arg(required = true)]
+    file: Option<PathBuf>,
     /// Side of a cell in m (default: 0.25 for a scene, 1 for an image or table).
     #[arg(long, allow_negative_numbers = true)]
     cell_m: Option<f64>,
@@ -41,6 +45,13 @@ pub struct BakeArgs {
     /// Print one JSON object on stdout.
     #[arg(long)]
     json: bool,
+}
+
+/// What is baked instead of puddles.
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Streak textures of rain, as a KTX2 file.
+    Streaks(streaks::StreaksArgs),
 }
 
 /// A file name's ending in lower case.
@@ -84,6 +95,9 @@ pub fn read(path: &Path, cell_m: Option<f64>, height_scale_m: f64) -> Result<Hei
 /// Runs `rain bake` and prints; returns the exit code.
 #[must_use]
 pub fn run(args: &BakeArgs) -> ExitCode {
+    if let Some(What::Streaks(args)) = &args.what {
+        return streaks::run(args);
+    }
     match bake(args) {
         Ok(report) => {
             let text = if args.json {
@@ -110,10 +124,11 @@ fn bake(args: &BakeArgs) -> Result<BakeReport, String> {
         "-1e7 to 1e7 m",
     )
     .map_err(|error| error.to_string())?;
-    let field = read(&args.file, args.cell_m, args.height_scale_m)?;
-    let scene = matches!(ending(&args.file).as_deref(), Some("glb" | "gltf"));
+    let file = args.file.as_deref().ok_or("no file is named")?;
+    let field = read(file, args.cell_m, args.height_scale_m)?;
+    let scene = matches!(ending(file).as_deref(), Some("glb" | "gltf"));
     let threshold_m = args.threshold_m.unwrap_or(if scene { SCENE_THRESHOLD_M } else { 0.0 });
-    basins(&field, args.closed, threshold_m).map_err(|error| format!("{}: {error}", args.file.display()))
+    basins(&field, args.closed, threshold_m).map_err(|error| format!("{}: {error}", file.display()))
 }
 
 /// The basins of a height field.

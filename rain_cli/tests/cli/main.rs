@@ -3,5 +3,6 @@
 mod bad_input;
 mod document;
 mod program;
+mod streaks;
 mod values;
 mod weather_model;

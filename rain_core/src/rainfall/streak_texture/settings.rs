@@ -15,6 +15,9 @@ pub const STREAK_TEXTURE_VERSION: u32 = 1;
 /// Layers that every graphics device takes in one array.
 pub const MAX_STREAK_LAYERS: usize = 256;
 
+/// Most bytes of all layers, half a gibibyte.
+const MAX_BYTES: f64 = 536_870_912.0;
+
 /// Most drops in one layer.
 const MAX_DROPS: f64 = 1_048_576.0;
 
@@ -97,8 +100,8 @@ impl StreakTextureSettings {
     /// The layers, in the order of the array: all classes of the first rate, then those of the next.
     ///
     /// # Errors
-    /// When a setting is outside its domain, a list does not rise, there are more than [`MAX_STREAK_LAYERS`] layers, or
-    /// one would hold more than a million drops.
+    /// When a setting is outside its domain, a list does not rise, there are more than [`MAX_STREAK_LAYERS`] layers or
+    /// half a gibibyte of texels, or a layer would hold more than a million drops.
     pub fn layers(&self) -> Result<Vec<StreakLayer>, ConfigError> {
         rising(
             "intensities_mm_h",
@@ -135,6 +138,13 @@ impl StreakTextureSettings {
             },
             2048.0,
             "a power of two from 32 to 2048",
+        )?;
+        in_range(
+            "texels (bytes of all layers)",
+            self.bytes() as f64,
+            0.0,
+            MAX_BYTES,
+            "at most 536870912, half a gibibyte",
         )?;
         in_range("tile_m", self.tile_m, 0.25, 4.0, "0.25 to 4 m")?;
         in_range("exposure_s", self.exposure_s, 1e-4, 0.1, "1e-4 to 0.1 s")?;

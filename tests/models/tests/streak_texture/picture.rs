@@ -265,6 +265,13 @@ fn a_dry_rate_and_odd_settings_are_refused_by_name() {
         (bad(|s| s.texels = 16), "texels is 16"),
         (bad(|s| s.texels = 4096), "texels is 4096"),
         (bad(|s| s.texels = 0), "texels is 0"),
+        (
+            bad(|s| {
+                s.texels = 2048;
+                s.intensities_mm_h = (1..=9).map(f64::from).collect();
+            }),
+            "texels (bytes of all layers) is 603977",
+        ),
         (bad(|s| s.tile_m = 0.0), "tile_m is 0, allowed: 0.25 to 4 m"),
         (bad(|s| s.exposure_s = 0.5), "exposure_s is 0.5, allowed: 1e-4 to 0.1 s"),
         (bad(|s| s.exposure_s = f64::INFINITY), "exposure_s is inf"),
