@@ -375,3 +375,51 @@ struct TileDrop {
     // Opacity over that of a whole drop.
     share: f32,
 }
+
+// A point or spot light.
+struct LampParams {
+    // Relative to the eye, m; w: radius, m.
+    place: vec4<f32>,
+    // Illuminance at a metre, exposed; w: cosine of the angle up to which it is whole, -1 for a point light.
+    intensity: vec4<f32>,
+    // Where a spot looks; w: cosine of the angle at which it ends, -2 for a point light.
+    direction: vec4<f32>,
+}
+
+// A view of the lattice.
+struct LatticeParams {
+    // Eye-relative world to clip.
+    clip_from_eye: mat4x4<f32>,
+    // Radiance scale of the environment map; w: its highest mip level.
+    environment: vec4<f32>,
+    // Uniform surrounding radiance; w unused.
+    ambient: vec4<f32>,
+    // Direction towards the sun; w unused.
+    sun_direction: vec4<f32>,
+    // Illuminance of the sun, exposed; w unused.
+    sun: vec4<f32>,
+    // Radiance of haze before a card; w unused.
+    fog: vec4<f32>,
+    // Near plane, m.
+    near: f32,
+    // Contrast gain, 1 = physical.
+    contrast: f32,
+    // 1 when the scene's depth fades cards, 0 when it only hides them.
+    soft: f32,
+    cards: u32,
+    lamps: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
+    cover: CoverParams,
+    lamp: array<LampParams, 16>,
+}
+
+// A cell's picture of one class; see `Card` in rain_core.
+struct Card {
+    centre: vec4<f32>,
+    facing: vec4<f32>,
+    turn: vec4<f32>,
+    place: vec4<f32>,
+    layers: vec4<u32>,
+}

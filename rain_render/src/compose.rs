@@ -41,7 +41,8 @@ pub const LIBRARIES: &[Library] = library![
     "ring_layers",
     "water_column",
     "water_map",
-    "streak_texture"
+    "streak_texture",
+    "lattice"
 ];
 
 /// A pass's own source.
@@ -69,7 +70,8 @@ pub const PASSES: &[Pass] = passes![
     "waves",
     "ring_layers",
     "water_map",
-    "streak_texture"
+    "streak_texture",
+    "lattice_draw"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:

@@ -5,7 +5,7 @@
 #![allow(missing_docs, reason = "the members are documented once, in shaders/types.wgsl")]
 
 use bytemuck::{Pod, Zeroable};
-use rain_core::rainfall::CLASS_COUNT;
+use rain_core::rainfall::{CLASS_COUNT, MAX_LAMPS};
 use rain_core::weather::SurfaceClass;
 
 use crate::reflection::MAX_MIRRORS;
@@ -307,6 +307,37 @@ pub struct StreakLevel {
     pub pad_c: u32,
 }
 
+/// A point or spot light.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LampParams {
+    pub place: [f32; 4],
+    pub intensity: [f32; 4],
+    pub direction: [f32; 4],
+}
+
+/// A view of the lattice.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LatticeParams {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub fog: [f32; 4],
+    pub near: f32,
+    pub contrast: f32,
+    pub soft: f32,
+    pub cards: u32,
+    pub lamps: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+    pub pad_c: u32,
+    pub cover: CoverParams,
+    pub lamp: [LampParams; MAX_LAMPS],
+}
+
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
 pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
 
@@ -319,7 +350,7 @@ macro_rules! layout {
 /// The layouts of every struct of this file.
 #[must_use]
 pub fn layouts() -> Vec<Layout> {
-    use rain_core::rainfall::{DropRecord, TileDrop};
+    use rain_core::rainfall::{Card, DropRecord, TileDrop};
     vec![
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
@@ -346,5 +377,9 @@ pub fn layouts() -> Vec<Layout> {
         layout!(StreakTile: texels, first, drops, pad_a, path, unit, steps, pad_b),
         layout!(StreakLevel: side, first, above, words, row, pad_a, pad_b, pad_c),
         layout!(TileDrop: x, y, diameter, share),
+        layout!(LampParams: place, intensity, direction),
+        layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
+            lamps, pad_a, pad_b, pad_c, cover, lamp),
+        layout!(Card: centre, facing, turn, place, layers),
     ]
 }

@@ -14,6 +14,7 @@ mod fit_flux;
 mod gamma;
 mod impacts;
 mod incomplete_gamma;
+mod lattice;
 mod oscillation;
 mod renormalise;
 mod sampling;
@@ -42,6 +43,10 @@ pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, d
 pub use gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};
 pub use impacts::measured_energy_j_m2_mm;
 pub(crate) use impacts::turning;
+pub use lattice::{
+    Card, CardCounts, CardHit, Lamp, LatticeLevel, LatticePlan, LatticeSettings, LatticeSharing, LatticeView,
+    MAX_CARD_SAMPLES, MAX_LAMPS, pitch_weight,
+};
 pub use oscillation::{
     Oscillation, mode_decay_s, mode_frequency_hz, oscillating_radius_f32, phase_turns, sustained_amplitude,
 };

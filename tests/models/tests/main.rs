@@ -13,6 +13,7 @@ mod fall;
 mod fall_speed;
 mod hash;
 mod height_field;
+mod lattice;
 mod light;
 mod quadrature;
 mod spectrum;

@@ -6,6 +6,7 @@ mod device;
 mod far;
 mod field_parity;
 mod hash_parity;
+mod lattice;
 mod maps;
 mod optical_depth;
 mod reflection;

@@ -270,7 +270,7 @@ fn a_dry_rate_and_odd_settings_are_refused_by_name() {
                 s.texels = 2048;
                 s.intensities_mm_h = (1..=9).map(f64::from).collect();
             }),
-            "texels (bytes of all layers) is 603977",
+            "texels (bytes of all layers) is 603979740",
         ),
         (bad(|s| s.tile_m = 0.0), "tile_m is 0, allowed: 0.25 to 4 m"),
         (bad(|s| s.exposure_s = 0.5), "exposure_s is 0.5, allowed: 1e-4 to 0.1 s"),
