@@ -1,4 +1,4 @@
-//! `rain bake`: the puddles of a scene or height field, and textures for fixed weather.
+//! `rain bake`: the puddles of a scene or height field; what else is made ahead is a subcommand.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -13,6 +13,7 @@ use rain_core::surface::height_field::{HeightField, HeightFieldError, ImportLimi
 use serde_json::{Value, json};
 
 use crate::print;
+use crate::streaks::{self, StreaksArgs};
 use crate::wet_textures::{self, WetTexturesArgs};
 
 /// Cell of a scene where none is given. Units: m.
@@ -27,7 +28,7 @@ pub const GRID_CELL_M: f64 = 1.0;
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct BakeArgs {
     #[command(subcommand)]
-    what: Option<BakeWhat>,
+    what: Option<What>,
     /// glTF or GLB scene, grey PNG, or CSV table of heights.
     #[arg(required = true)]
     file: Option<PathBuf>,
@@ -48,11 +49,13 @@ pub struct BakeArgs {
     json: bool,
 }
 
-/// What is baked beside puddles.
+/// What is baked instead of puddles.
 #[derive(Debug, Subcommand)]
-enum BakeWhat {
+enum What {
     /// Textures of a material as they look in fixed weather.
     WetTextures(WetTexturesArgs),
+    /// Streak textures of rain, as a KTX2 file.
+    Streaks(StreaksArgs),
 }
 
 /// A file name's ending in lower case.
@@ -96,8 +99,10 @@ pub fn read(path: &Path, cell_m: Option<f64>, height_scale_m: f64) -> Result<Hei
 /// Runs `rain bake` and prints; returns the exit code.
 #[must_use]
 pub fn run(args: &BakeArgs) -> ExitCode {
-    if let Some(BakeWhat::WetTextures(args)) = &args.what {
-        return wet_textures::run(args);
+    match &args.what {
+        Some(What::WetTextures(args)) => return wet_textures::run(args),
+        Some(What::Streaks(args)) => return streaks::run(args),
+        None => {}
     }
     match bake(args) {
         Ok(report) => {
@@ -125,8 +130,7 @@ fn bake(args: &BakeArgs) -> Result<BakeReport, String> {
         "-1e7 to 1e7 m",
     )
     .map_err(|error| error.to_string())?;
-    // The program asks for one or the other.
-    let file = args.file.as_deref().unwrap_or(Path::new(""));
+    let file = args.file.as_deref().ok_or("no file is named")?;
     let field = read(file, args.cell_m, args.height_scale_m)?;
     let scene = matches!(ending(file).as_deref(), Some("glb" | "gltf"));
     let threshold_m = args.threshold_m.unwrap_or(if scene { SCENE_THRESHOLD_M } else { 0.0 });

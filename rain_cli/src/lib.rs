@@ -1,4 +1,5 @@
-//! What the `rain` program computes without an engine: the models as a calculator, puddles of a scene, benchmarks.
+//! What the `rain` program computes without an engine: the models as a calculator, puddles of a scene, streak
+//! textures, benchmarks.
 //!
 //! Nothing here needs Bevy or a GPU; without the feature `scenarios` this package does not build them.
 
@@ -6,4 +7,5 @@ pub mod bake;
 pub mod bench;
 pub mod model;
 pub mod print;
+pub mod streaks;
 pub mod wet_textures;

@@ -28,7 +28,7 @@ enum Command {
     Check(check::CheckArgs),
     /// Compute a physical model: `rain model terminal-speed diameter_mm=2`. Without a name, list them.
     Model(model::ModelArgs),
-    /// Find the puddles of a scene or height field.
+    /// Find the puddles of a scene or height field, or make streak textures (`rain bake streaks`).
     Bake(bake::BakeArgs),
     /// Measure.
     Bench(bench::BenchArgs),

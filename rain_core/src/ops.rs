@@ -75,6 +75,16 @@ pub fn asin(x: f64) -> f64 {
 pub fn acos(x: f64) -> f64 {
     libm::acos(x)
 }
+/// Arc sine in single precision, radians.
+#[must_use]
+pub fn asinf(x: f32) -> f32 {
+    libm::asinf(x)
+}
+/// Arc cosine in single precision, radians.
+#[must_use]
+pub fn acosf(x: f32) -> f32 {
+    libm::acosf(x)
+}
 /// Hyperbolic tangent; ±1 for large arguments.
 #[must_use]
 pub fn tanh(x: f64) -> f64 {

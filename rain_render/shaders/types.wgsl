@@ -337,3 +337,93 @@ struct WaterStamp {
     pad_a: u32,
     pad_b: u32,
 }
+
+// A streak texture's layer while it is drawn.
+struct StreakTile {
+    // Texels a side of the finest level.
+    texels: u32,
+    // First drop and number of drops.
+    first: u32,
+    drops: u32,
+    pad_a: u32,
+    // Length of every streak without its ends, texels.
+    path: f32,
+    // Opacity of a texel of value 1.
+    unit: f32,
+    // Steps of the overlap sum in one unit.
+    steps: f32,
+    pad_b: u32,
+}
+
+// A level of a layer while it is made.
+struct StreakLevel {
+    // Texels a side.
+    side: u32,
+    // Where its texels begin, and those of the level above it.
+    first: u32,
+    above: u32,
+    // Where its rows begin among the packed words, and words a row.
+    words: u32,
+    row: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
+}
+
+// A drop of a streak texture, in texels.
+struct TileDrop {
+    // Where its streak begins; y runs along the fall.
+    x: f32,
+    y: f32,
+    diameter: f32,
+    // Opacity over that of a whole drop.
+    share: f32,
+}
+
+// A point or spot light.
+struct LampParams {
+    // Relative to the eye, m; w: radius, m.
+    place: vec4<f32>,
+    // Illuminance at a metre, exposed; w: cosine of the angle up to which it is whole, -1 for a point light.
+    intensity: vec4<f32>,
+    // Where a spot looks; w: cosine of the angle at which it ends, -2 for a point light.
+    direction: vec4<f32>,
+}
+
+// A view of the lattice.
+struct LatticeParams {
+    // Eye-relative world to clip.
+    clip_from_eye: mat4x4<f32>,
+    // Radiance scale of the environment map; w: its highest mip level.
+    environment: vec4<f32>,
+    // Uniform surrounding radiance; w unused.
+    ambient: vec4<f32>,
+    // Direction towards the sun; w unused.
+    sun_direction: vec4<f32>,
+    // Illuminance of the sun, exposed; w unused.
+    sun: vec4<f32>,
+    // Radiance of haze before a card; w unused.
+    fog: vec4<f32>,
+    // Near plane, m.
+    near: f32,
+    // Contrast gain, 1 = physical.
+    contrast: f32,
+    // 1 when the scene's depth fades cards, 0 when it only hides them.
+    soft: f32,
+    cards: u32,
+    lamps: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
+    cover: CoverParams,
+    lamp: array<LampParams, 16>,
+}
+
+// A cell's picture of one class; see `Card` in rain_core.
+struct Card {
+    centre: vec4<f32>,
+    facing: vec4<f32>,
+    turn: vec4<f32>,
+    place: vec4<f32>,
+    layers: vec4<u32>,
+}

@@ -44,7 +44,9 @@ pub const LIBRARIES: &[Library] = library![
     "ring_layers",
     "water_column",
     "water_map",
-    "rain_areas"
+    "rain_areas",
+    "streak_texture",
+    "lattice"
 ];
 
 /// A pass's own source.
@@ -71,7 +73,9 @@ pub const PASSES: &[Pass] = passes![
     "reflection_mips",
     "waves",
     "ring_layers",
-    "water_map"
+    "water_map",
+    "streak_texture",
+    "lattice_draw"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:

@@ -5,7 +5,7 @@
 #![allow(missing_docs, reason = "the members are documented once, in shaders/types.wgsl")]
 
 use bytemuck::{Pod, Zeroable};
-use rain_core::rainfall::CLASS_COUNT;
+use rain_core::rainfall::{CLASS_COUNT, MAX_LAMPS};
 use rain_core::weather::SurfaceClass;
 
 use crate::reflection::MAX_MIRRORS;
@@ -283,6 +283,65 @@ pub struct WaterStamp {
     pub pad_b: u32,
 }
 
+/// A streak texture's layer while it is drawn.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct StreakTile {
+    pub texels: u32,
+    pub first: u32,
+    pub drops: u32,
+    pub pad_a: u32,
+    pub path: f32,
+    pub unit: f32,
+    pub steps: f32,
+    pub pad_b: u32,
+}
+
+/// A level of a layer while it is made.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+pub struct StreakLevel {
+    pub side: u32,
+    pub first: u32,
+    pub above: u32,
+    pub words: u32,
+    pub row: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+    pub pad_c: u32,
+}
+
+/// A point or spot light.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LampParams {
+    pub place: [f32; 4],
+    pub intensity: [f32; 4],
+    pub direction: [f32; 4],
+}
+
+/// A view of the lattice.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LatticeParams {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub fog: [f32; 4],
+    pub near: f32,
+    pub contrast: f32,
+    pub soft: f32,
+    pub cards: u32,
+    pub lamps: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+    pub pad_c: u32,
+    pub cover: CoverParams,
+    pub lamp: [LampParams; MAX_LAMPS],
+}
+
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
 pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
 
@@ -295,7 +354,7 @@ macro_rules! layout {
 /// The layouts of every struct of this file.
 #[must_use]
 pub fn layouts() -> Vec<Layout> {
-    use rain_core::rainfall::DropRecord;
+    use rain_core::rainfall::{Card, DropRecord, TileDrop};
     vec![
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
@@ -319,5 +378,12 @@ pub fn layouts() -> Vec<Layout> {
         layout!(WaterMapParams: rules, cover, offset, kept, seed_low, seed_cells, ground_cells, ground_corner, corner,
             texels, level, cell, ground_step, per_ground_cell, base, rain, evaporation, time, pools),
         layout!(WaterStamp: low, count, start, along, length, half, share, aside, band, slot, pad_a, pad_b),
+        layout!(StreakTile: texels, first, drops, pad_a, path, unit, steps, pad_b),
+        layout!(StreakLevel: side, first, above, words, row, pad_a, pad_b, pad_c),
+        layout!(TileDrop: x, y, diameter, share),
+        layout!(LampParams: place, intensity, direction),
+        layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
+            lamps, pad_a, pad_b, pad_c, cover, lamp),
+        layout!(Card: centre, facing, turn, place, layers),
     ]
 }

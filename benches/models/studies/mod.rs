@@ -12,6 +12,7 @@ mod light;
 mod ripples;
 mod spectrum;
 mod splash;
+mod streaks;
 mod surface;
 mod wave_grid;
 mod waves;
@@ -28,6 +29,7 @@ pub fn all() -> Vec<Study> {
         spectrum::studies(),
         drop::studies(),
         light::studies(),
+        streaks::studies(),
         hash::studies(),
         canopy::studies(),
         weather::studies(),

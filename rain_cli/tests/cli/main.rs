@@ -3,6 +3,7 @@
 mod bad_input;
 mod document;
 mod program;
+mod streaks;
 mod values;
 mod weather_model;
 mod wet_textures;

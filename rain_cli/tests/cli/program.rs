@@ -5,7 +5,7 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-fn rain(arguments: &[&str]) -> Output {
+pub fn rain(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_rain"))
         .args(arguments)
         .output()
@@ -14,7 +14,7 @@ fn rain(arguments: &[&str]) -> Output {
 
 /// What it prints as JSON; nothing may go to stderr.
 #[track_caller]
-fn json(arguments: &[&str]) -> Value {
+pub fn json(arguments: &[&str]) -> Value {
     let output = rain(arguments);
     let (out, err) = (
         String::from_utf8_lossy(&output.stdout),
@@ -28,7 +28,7 @@ fn json(arguments: &[&str]) -> Value {
 
 /// Exit code 2, nothing on stdout, and all of `words` on stderr.
 #[track_caller]
-fn refused(arguments: &[&str], words: &[&str]) {
+pub fn refused(arguments: &[&str], words: &[&str]) {
     let output = rain(arguments);
     let err = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {err}");
@@ -54,7 +54,7 @@ fn file(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> String {
     path.to_string_lossy().into_owned()
 }
 
-fn folder() -> tempfile::TempDir {
+pub fn folder() -> tempfile::TempDir {
     tempfile::TempDir::new().expect("a temporary folder")
 }
 

@@ -17,6 +17,7 @@ mod follow;
 mod gamma;
 mod impacts;
 mod incomplete_gamma;
+mod lattice;
 mod local;
 mod oscillation;
 mod renormalise;
@@ -25,6 +26,7 @@ mod shape;
 pub mod source_forms;
 mod spectrum;
 mod streak;
+mod streak_texture;
 pub mod terminal_velocity;
 mod wind_response;
 
@@ -47,6 +49,10 @@ pub use follow::{Follow, FollowSettings, FollowShape, heading_margin_rad};
 pub use gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};
 pub use impacts::measured_energy_j_m2_mm;
 pub(crate) use impacts::turning;
+pub use lattice::{
+    Card, CardCounts, CardHit, Lamp, LatticeLevel, LatticePlan, LatticeSettings, LatticeSharing, LatticeView,
+    MAX_CARD_SAMPLES, MAX_LAMPS, pitch_weight,
+};
 pub use local::{LocalRain, RateLadder};
 pub use oscillation::{
     Oscillation, mode_decay_s, mode_frequency_hz, oscillating_radius_f32, phase_turns, sustained_amplitude,
@@ -60,6 +66,10 @@ pub use spectrum::{Distribution, MAX_INTENSITY_MM_H, Spectrum};
 pub use streak::{
     ScreenStreak, circle_of_confusion_px, clip_to_near, contrast_gain, lamp_falloff_per_m2, streak_length_m,
     streak_opacity, streak_opacity_f32, streak_path_m, streak_peak_opacity,
+};
+pub use streak_texture::{
+    CacheOutcome, CachedStreaks, MAX_STREAK_LAYERS, OVERLAP_STEPS, PackedStreaks, STREAK_TEXTURE_VERSION, StreakCache,
+    StreakFileError, StreakLayer, StreakTexture, StreakTextureSettings, StreakTextures, TileDrop,
 };
 pub use terminal_velocity::{
     BeardAir, FallLaw, MAX_FITTED_DIAMETER_MM, StandardAtmosphere, density_factor, gunn_kinzer, terminal_velocity,

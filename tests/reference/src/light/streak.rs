@@ -71,3 +71,33 @@ pub fn disc_integral_px2(diameter: f64, focal: f64, start: f64, end: f64, near: 
         core::f64::consts::FRAC_PI_4 * (diameter * focal / (start + (end - start) * t)).powi(2)
     })
 }
+
+/// Mean over a texel, at `sub`² points, of what streaks take out of the light behind them, 1 − ∏(1 − α).
+///
+/// `streaks`: [x, y where it begins, diameter, share of whole drops] in texels, all `path` long along +y, in a picture
+/// of `side` texels that wraps around.
+pub fn texel_opacity(streaks: &[[f64; 4]], path: f64, side: f64, texel: [u32; 2], sub: u32) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..sub * sub {
+        let at = |k: u32, corner: u32| f64::from(corner) + (f64::from(k) + 0.5) / f64::from(sub);
+        let (x, y) = (at(i % sub, texel[0]), at(i / sub, texel[1]));
+        let mut through = 1.0;
+        for [streak_x, streak_y, diameter, share] in streaks {
+            // Every image of the streak that may reach the texel.
+            for turn in -1..=2 {
+                let along = y - streak_y + side * f64::from(turn);
+                if along < -diameter || along > path + diameter {
+                    continue;
+                }
+                for across in [x - streak_x, x - streak_x + side, x - streak_x - side] {
+                    let square = 0.25 * diameter * diameter - across * across;
+                    if square > 0.0 {
+                        through *= 1.0 - share * overlap(along, square.sqrt(), path);
+                    }
+                }
+            }
+        }
+        sum += 1.0 - through;
+    }
+    sum / f64::from(sub * sub)
+}

@@ -1,0 +1,117 @@
+// Cards of the lattice, six vertices each, from far to near.
+
+@group(0) @binding(0) var<uniform> view: LatticeParams;
+@group(0) @binding(1) var<storage, read> cards: array<Card>;
+// Opacity of a texel of value 1, of each layer.
+@group(0) @binding(2) var<storage, read> units: array<f32>;
+@group(0) @binding(3) var streaks: texture_2d_array<f32>;
+@group(0) @binding(4) var streak_sampler: sampler;
+@group(0) @binding(5) var scene_depth: texture_depth_2d;
+@group(0) @binding(6) var cover_map: texture_depth_2d;
+@group(0) @binding(7) var environment: texture_cube<f32>;
+@group(0) @binding(8) var environment_sampler: sampler;
+
+struct CardVertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) point: vec3<f32>,
+    @location(1) place: vec2<f32>,
+    @location(2) @interpolate(flat) card: u32,
+    // Radiance without lamps.
+    @location(3) @interpolate(flat) light: vec3<f32>,
+}
+
+fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
+    // Cube maps are left-handed.
+    let d = vec3<f32>(direction.x, direction.y, -direction.z);
+    let level = blur * view.environment.w;
+    return textureSampleLevel(environment, environment_sampler, d, level).rgb * view.environment.rgb + view.ambient.rgb;
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) vertex_index: u32) -> CardVertex {
+    let index = vertex_index / 6u;
+    let card = cards[index];
+    // Two triangles: 0 1 2, 2 1 3.
+    let i = vertex_index % 6u;
+    let corner = select(i, select(5u - i, 3u, i == 5u), i > 2u);
+    let side = f32(corner & 1u) * 2.0 - 1.0;
+    let end = f32(corner >> 1u) * 2.0 - 1.0;
+    let right = vec3<f32>(card.facing.y, 0.0, -card.facing.x);
+    let point = card.centre.xyz + (right * side + vec3<f32>(0.0, end, 0.0)) * card.centre.w;
+    let sight = normalize(card.centre.xyz);
+    let behind = vec3<f32>(-sight.x, max(0.2, -sight.y), -sight.z);
+    let theta = acos(clamp(dot(sight, view.sun_direction.xyz), -1.0, 1.0));
+    var out: CardVertex;
+    out.position = view.clip_from_eye * vec4<f32>(point, 1.0);
+    out.point = point;
+    out.place = rain_card_place(card, point);
+    out.card = index;
+    out.light = rain_drop_radiance(surroundings(sight, 0.55), surroundings(behind, 0.9), view.sun.rgb, theta);
+    return out;
+}
+
+// Share of a card's depth that lies before the scene.
+fn before_scene(in: CardVertex, half: f32) -> f32 {
+    if (view.soft < 0.5) {
+        return 1.0;
+    }
+    // Infinite reverse-Z: distance along the axis = near / depth; both grow alike along the ray.
+    let scene = view.near / max(textureLoad(scene_depth, vec2<i32>(in.position.xy), 0), 1e-7);
+    let own = view.near / max(in.position.z, 1e-7);
+    let behind = (scene / own - 1.0) * length(in.point);
+    return clamp(0.5 * behind / half + 0.5, 0.0, 1.0);
+}
+
+// What a card's pictures take out of the light, by layer weights: 1 - ∏(1 - o).
+fn laid_over(in: CardVertex, card: Card, lighter: f32, heavier: f32, dx: vec2<f32>, dy: vec2<f32>) -> f32 {
+    var through = 1.0;
+    for (var i = 0u; i < card.layers.z; i++) {
+        let at = in.place + rain_card_offset(card.layers, i);
+        let a = textureSampleGrad(streaks, streak_sampler, at, card.layers.x, dx, dy).r;
+        let b = textureSampleGrad(streaks, streak_sampler, at, card.layers.y, dx, dy).r;
+        through *= 1.0 - clamp(a * lighter + b * heavier, 0.0, 1.0);
+    }
+    return 1.0 - through;
+}
+
+fn is_dry(card: Card, point: vec3<f32>) -> bool {
+    return rain_inside_building(cover_map, view.cover, point)
+        || rain_covered(cover_map, view.cover, point, card.facing.w);
+}
+
+@fragment
+fn colour(in: CardVertex) -> @location(0) vec4<f32> {
+    let dx = dpdx(in.place);
+    let dy = dpdy(in.place);
+    let card = cards[in.card];
+    let gain = card.facing.z * rain_card_slant(card.facing.xy, normalize(in.point));
+    let heavier = card.place.z;
+    let opacity = before_scene(in, card.centre.w)
+        * laid_over(in, card, gain * (1.0 - heavier) * units[card.layers.x], gain * heavier * units[card.layers.y], dx, dy);
+    if (opacity < 1e-6 || is_dry(card, in.point)) {
+        return vec4<f32>(0.0);
+    }
+    var light = in.light;
+    for (var i = 0u; i < view.lamps; i++) {
+        light += rain_lamp_radiance(view.lamp[i], in.point);
+    }
+    let seen = mix(view.fog.rgb, light, card.place.w);
+    let shown = rain_contrast(opacity, view.contrast);
+    return vec4<f32>(seen * shown, shown);
+}
+
+// The share of a pixel that swept drops cover, without the share of the exposure.
+@fragment
+fn coverage(in: CardVertex) -> @location(0) vec4<f32> {
+    let dx = dpdx(in.place);
+    let dy = dpdy(in.place);
+    let card = cards[in.card];
+    let gain = min(card.facing.z, 1.0) * rain_card_slant(card.facing.xy, normalize(in.point));
+    let heavier = card.place.z;
+    let covered = before_scene(in, card.centre.w)
+        * laid_over(in, card, gain * (1.0 - heavier), gain * heavier, dx, dy);
+    if (covered < 1e-6 || is_dry(card, in.point)) {
+        return vec4<f32>(0.0);
+    }
+    return vec4<f32>(covered, 0.0, 0.0, covered);
+}
