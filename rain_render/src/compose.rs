@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::waves::RING_FADE;
 
 /// Structs that cross from the CPU.
@@ -30,6 +31,7 @@ pub const LIBRARIES: &[Library] = library![
     "cover",
     "streak",
     "drop_light",
+    "surroundings",
     "wetness",
     "standing_water",
     "ground_memory",
@@ -40,7 +42,9 @@ pub const LIBRARIES: &[Library] = library![
     "waves",
     "ring_layers",
     "water_column",
-    "water_map"
+    "water_map",
+    "landing",
+    "splash"
 ];
 
 /// A pass's own source.
@@ -67,7 +71,9 @@ pub const PASSES: &[Pass] = passes![
     "reflection_mips",
     "waves",
     "ring_layers",
-    "water_map"
+    "water_map",
+    "splash_make",
+    "splash_draw"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
@@ -99,6 +105,9 @@ pub fn constants() -> String {
         ("RAIN_WIND_DIRECTIONS", WIND_DIRECTIONS),
         ("RAIN_WAVE_PERIOD_S", WAVE_PERIOD_S),
         ("RAIN_RING_FADE", f64::from(RING_FADE)),
+        ("RAIN_SPLASH_CELL_M", SPLASH_CELL_M),
+        ("RAIN_SPLASH_SLOT_S", SPLASH_SLOT_S),
+        ("RAIN_SPLASH_SLOTS", f64::from(SPLASH_SLOTS)),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }

@@ -13,5 +13,6 @@ pub mod rainfall;
 pub mod reflection;
 pub mod ring_layers;
 pub mod slope_mips;
+pub mod splash;
 pub mod water_map;
 pub mod waves;
