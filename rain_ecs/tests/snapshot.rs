@@ -170,3 +170,45 @@ fn numbers_that_no_state_has_are_refused() {
         assert_eq!(state_hash(app.world()), before);
     }
 }
+
+/// Something that is seen only.
+#[derive(bevy_ecs::prelude::Resource, serde::Serialize, serde::Deserialize, Clone, Copy, PartialEq, Debug)]
+struct Foam(u32);
+
+impl rain_ecs::snapshot::SnapshotPart for Foam {
+    fn save(world: &bevy_ecs::prelude::World) -> Option<Self> {
+        world.get_resource().copied()
+    }
+
+    fn prepare(self, _: &bevy_ecs::prelude::World) -> Result<rain_ecs::snapshot::Apply, SnapshotError> {
+        Ok(Box::new(move |world| world.insert_resource(self)))
+    }
+
+    fn absent(world: &mut bevy_ecs::prelude::World) {
+        world.insert_resource(Self(0));
+    }
+}
+
+#[test]
+fn what_is_seen_only_travels_between_worlds_that_see_and_those_that_do_not() {
+    let seeing = || {
+        let mut app = stormy(2);
+        app.snapshot_part::<Foam>("seen_foam").insert_resource(Foam(7));
+        app
+    };
+    let (mut client, mut server) = (seeing(), stormy(5));
+    let (rich, plain) = (save(&client), save(&server));
+    assert!(rich.parts().any(|part| part == "seen_foam"));
+    rich.restore(server.world_mut()).expect("the server does not look");
+    assert_eq!(state_hash(server.world()), state_hash(client.world()));
+    plain.restore(client.world_mut()).expect("nothing is seen yet");
+    assert_eq!(client.world().resource::<Foam>(), &Foam(0));
+    rich.restore(client.world_mut()).expect("fits");
+    assert_eq!(client.world().resource::<Foam>(), &Foam(7));
+    // What is simulated may not be missing.
+    client.snapshot_part::<Foam>("foam");
+    let error = rich.restore(client.world_mut()).expect_err("no such part");
+    assert!(matches!(error, SnapshotError::MissingPart { part: "foam" }), "{error}");
+    let strange = save(&client).restore(server.world_mut()).expect_err("unknown part");
+    assert!(matches!(strange, SnapshotError::UnknownPart { .. }), "{strange}");
+}

@@ -32,6 +32,10 @@ pub(crate) use weather::WeatherPart;
 /// Version of [`RainSnapshot`] that this library writes and reads.
 pub const SNAPSHOT_VERSION: u32 = 1;
 
+/// Names of parts that are seen only start so: a world without a renderer neither has nor needs them, so they may be
+/// missing in a snapshot and unknown to a world.
+pub const SEEN_ONLY: &str = "seen_";
+
 /// Puts a checked part into the world.
 pub type Apply = Box<dyn FnOnce(&mut World) + Send>;
 
@@ -131,13 +135,15 @@ impl RainSnapshot {
         }
         let none = SnapshotSources::default();
         let sources = world.get_resource::<SnapshotSources>().unwrap_or(&none);
-        if let Some(part) = self.parts.keys().find(|name| !sources.0.contains_key(name.as_str())) {
+        let unknown = |name: &&String| !sources.0.contains_key(name.as_str()) && !name.starts_with(SEEN_ONLY);
+        if let Some(part) = self.parts.keys().find(unknown) {
             return Err(SnapshotError::UnknownPart { part: part.clone() });
         }
-        let mut applied = Vec::with_capacity(sources.0.len());
+        let mut applied: Vec<Apply> = Vec::with_capacity(sources.0.len());
         for (&part, source) in &sources.0 {
             match self.parts.get(part) {
                 Some(text) => applied.push((source.prepare)(part, text, world)?),
+                None if part.starts_with(SEEN_ONLY) => applied.push(Box::new(source.absent)),
                 None if (source.exists)(world) => return Err(SnapshotError::MissingPart { part }),
                 None => {}
             }
@@ -199,6 +205,9 @@ pub trait SnapshotPart: Serialize + DeserializeOwned + 'static {
     /// # Errors
     /// When it does not fit, or nothing can have written it.
     fn prepare(self, world: &World) -> Result<Apply, SnapshotError>;
+
+    /// What a part that is seen only ([`SEEN_ONLY`]) does when a snapshot without it is restored.
+    fn absent(_world: &mut World) {}
 }
 
 #[derive(Clone, Copy)]
@@ -206,6 +215,7 @@ struct Source {
     save: fn(&'static str, &World) -> Result<Option<String>, SnapshotError>,
     prepare: fn(&'static str, &str, &World) -> Result<Apply, SnapshotError>,
     exists: fn(&World) -> bool,
+    absent: fn(&mut World),
 }
 
 /// The parts of snapshots, by name; they are applied in alphabetical order.
@@ -238,6 +248,7 @@ impl SnapshotAppExt for App {
                 read.prepare(world)
             },
             exists: |world| P::save(world).is_some(),
+            absent: P::absent,
         };
         self.world_mut()
             .get_resource_or_init::<SnapshotSources>()

@@ -17,7 +17,7 @@ use rain_render::gpu_types::WaterLook;
 use rain_render::rainfall::Shutter;
 use rain_render::water_map::WaterMapPlace;
 
-use super::RainMasks;
+use super::{RainMasks, WaveLevels};
 use crate::cover::CoverMap;
 use crate::rainfall::{RainViewFrame, ViewMotion};
 use crate::surface::{
@@ -109,7 +109,12 @@ pub(super) struct ExtractedWaves {
 }
 
 /// Takes this frame's rings and waves out of the main world; the lists go back and forth.
-pub(super) fn extract_waves(mut main: ResMut<MainWorld>, mut extracted: ResMut<ExtractedWaves>) {
+pub(super) fn extract_waves(
+    mut main: ResMut<MainWorld>,
+    mut extracted: ResMut<ExtractedWaves>,
+    levels: Res<WaveLevels>,
+) {
+    levels.hand();
     let lost = std::mem::take(&mut extracted.lost);
     extracted.ripple_side_m = 0.0;
     extracted.wave_tile_m = None;

@@ -5,11 +5,13 @@
 //! | `extract.rs` | main world → render world, plain data |
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
+//! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
 mod prepare;
 mod record;
+mod wave_levels;
 mod wet_material;
 
 use bevy::asset::RenderAssetUsages;
@@ -35,6 +37,7 @@ use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 use rain_render::reflection::REFLECTION_FORMAT;
 use rain_render::water_map::WaterMapSettings;
 
+pub(crate) use wave_levels::WaveLevels;
 pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
 
 use crate::cover::RainCoverView;
@@ -263,10 +266,11 @@ impl Plugin for RainRenderPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<RainReport>().init_resource::<RainRenderStatus>();
         let report = app.world().resource::<RainReport>().clone();
+        let levels = WaveLevels::default();
         if app.get_sub_app(RenderApp).is_none() {
             return; // a server: the main-world half still works
         }
-        app.add_plugins((
+        app.insert_resource(levels.clone()).add_plugins((
             ExtractComponentPlugin::<RainCoverView>::default(),
             ExtractComponentPlugin::<RainMirrorView>::default(),
             wet_material::WetMaterialPlugin,
@@ -276,6 +280,7 @@ impl Plugin for RainRenderPlugin {
         };
         render_app
             .insert_resource(report)
+            .insert_resource(levels)
             .init_gpu_resource::<prepare::RainGpu>()
             .init_resource::<extract::ExtractedWaves>()
             .init_resource::<extract::ExtractedMap>()
@@ -283,7 +288,13 @@ impl Plugin for RainRenderPlugin {
                 ExtractSchedule,
                 (extract::extract_rain, extract::extract_waves, extract::extract_map),
             )
-            .add_systems(Render, prepare::prepare_rain.in_set(RenderSystems::PrepareBindGroups))
+            .add_systems(
+                Render,
+                (
+                    prepare::prepare_rain.in_set(RenderSystems::PrepareBindGroups),
+                    wave_levels::show_levels.in_set(RenderSystems::Cleanup),
+                ),
+            )
             .add_systems(
                 RenderGraph,
                 (record::water_map, record::water).chain().before(camera_driver),

@@ -5,6 +5,7 @@ use rain_core::error::{ConfigError, in_range};
 use rain_core::waves::Push;
 use rain_ecs::prelude::*;
 use rain_render::waves::Disturbance;
+use serde::{Deserialize, Serialize};
 
 use crate::surface::WaterLevels;
 
@@ -85,9 +86,10 @@ pub(super) fn foot_fall(splash: &FootSplash) -> Disturbance {
 }
 
 /// Where a disturber was in the frame before.
-#[derive(Component, Clone, Copy, Debug, Default)]
+#[derive(Component, Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct DisturberMotion {
-    before: Option<Vec3>,
+    pub(super) before: Option<Vec3>,
     /// Whether it touched water there.
     wet: bool,
 }

@@ -9,13 +9,16 @@
 //! |---|---|
 //! | `disturb.rs` | [`WaterDisturber`]: what moves the water; [`WaterContact`]: the water that it stands in |
 //! | `rings.rs` | the tile of rings, and where they come from |
+//! | `snapshot.rs` | the waves in a snapshot |
 //! | `tile.rs` | the tile of puddles |
 
 mod disturb;
 mod rings;
+mod snapshot;
 mod tile;
 
 use bevy::prelude::*;
+use rain_ecs::snapshot::SnapshotAppExt;
 use rain_ecs::splash::{FootSplash, FootSystems};
 use rain_render::ring_layers::RingLayerFrame;
 use rain_render::waves::{RippleSettings, RippleTile, WaveFrame, WaveTile, WaveTileSettings};
@@ -73,6 +76,7 @@ impl Plugin for WavesPlugin {
             .register_type::<WaveWaterSettings>()
             .add_message::<FootSplash>()
             .init_resource::<WaveWaterSettings>()
+            .snapshot_part::<snapshot::WavesPart>(snapshot::PART)
             .add_systems(Startup, create_tiles)
             .add_systems(
                 PostUpdate,

@@ -58,6 +58,25 @@ impl PuddleWaves {
         self.off
     }
 
+    /// What the tile has followed: the time, the eye, and when it took its depths.
+    pub(super) fn followed(&self) -> (Option<u64>, Option<Vec3>, Option<u64>) {
+        (self.now_ns, self.eye, self.filled.map(|(_, at)| at))
+    }
+
+    /// A saved tile in place of this one, with what it had followed.
+    pub(super) fn put_back(&mut self, tile: WaveTile, now_ns: Option<u64>, eye: Option<Vec3>, filled_ns: Option<u64>) {
+        self.tile = tile;
+        (self.now_ns, self.eye) = (now_ns, eye);
+        // The levels are numbered anew.
+        self.filled = filled_ns.map(|at| (u64::MAX, at));
+    }
+
+    /// Stills the water at once.
+    pub(super) fn still(&mut self) {
+        self.tile.reset();
+        self.filled = None;
+    }
+
     /// Forgets all waves: the GPU has lost them.
     pub(crate) fn lose(&mut self) {
         if let Ok(tile) = WaveTile::new(self.tile.settings()) {

@@ -32,6 +32,16 @@ impl CalmBound {
         self.motion / (1.0 - 2.0 * courant * courant).sqrt()
     }
 
+    /// The bounds of displacement and motion. Units: m.
+    pub(super) fn parts(&self) -> [f64; 2] {
+        [self.displacement, self.motion]
+    }
+
+    /// Of what [`CalmBound::parts`] gave.
+    pub(super) fn of_parts([displacement, motion]: [f64; 2]) -> Self {
+        Self { displacement, motion }
+    }
+
     /// No height is above this now. Units: m.
     #[must_use]
     pub fn height_m(&self) -> f64 {

@@ -30,6 +30,8 @@ pub struct WaveFrame {
     pub(super) plan: Plan,
     /// Relative depths as they are stored, when they have changed.
     pub(super) depths: Vec<f32>,
+    /// Heights now and a step before, to begin with, as they are stored: a saved state was put back.
+    pub(super) heights: Option<[Vec<f32>; 2]>,
     /// Cells that are new or dry have to be stilled first.
     pub(super) settle: bool,
     /// Forces have to be balanced over the water that they reach.

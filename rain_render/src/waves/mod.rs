@@ -24,6 +24,7 @@ mod params;
 mod place;
 mod prepare;
 mod rings;
+mod saved;
 mod tile;
 
 pub use calm::CalmBound;
@@ -31,4 +32,5 @@ pub use frame::WaveFrame;
 pub use params::{Disturbance, MAX_DISTURBANCES, RippleSettings, WaveTileSettings, water_depth_m};
 pub use prepare::{WaveTileGpu, WavesGpu};
 pub use rings::RippleTile;
+pub use saved::{SavedWaves, SavedWavesError};
 pub use tile::WaveTile;

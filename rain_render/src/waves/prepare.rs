@@ -163,6 +163,9 @@ impl WaveTileGpu {
         if !frame.depths.is_empty() {
             queue.write_buffer(&self.depths, 0, bytemuck::cast_slice(&frame.depths));
         }
+        for (level, heights) in self.levels().into_iter().zip(frame.heights.iter().flatten()) {
+            queue.write_buffer(level, 0, bytemuck::cast_slice(heights));
+        }
         for (buffer, bytes) in [
             (&self.sources, bytemuck::cast_slice::<_, u8>(&plan.sources)),
             (&self.bins, bytemuck::cast_slice(&plan.bins)),

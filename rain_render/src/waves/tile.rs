@@ -27,21 +27,23 @@ const CUT: f64 = 2.6;
 /// Construction allocates one number a cell; frames allocate until their lists have grown.
 #[derive(Debug, Clone)]
 pub struct WaveTile {
-    settings: WaveTileSettings,
-    rules: Rules,
-    place: Place,
+    pub(super) settings: WaveTileSettings,
+    pub(super) rules: Rules,
+    pub(super) place: Place,
     /// Relative depths, as they are stored.
-    depths: Vec<f32>,
-    wet: usize,
-    left_ns: u64,
-    bound: CalmBound,
+    pub(super) depths: Vec<f32>,
+    pub(super) wet: usize,
+    pub(super) left_ns: u64,
+    pub(super) bound: CalmBound,
     plan: Plan,
     /// Moves since the last frame was taken.
-    moved: [i64; 2],
-    depths_changed: bool,
+    pub(super) moved: [i64; 2],
+    pub(super) depths_changed: bool,
     /// All water has to be stilled, and the map drawn once more.
-    still: bool,
-    asleep: bool,
+    pub(super) still: bool,
+    pub(super) asleep: bool,
+    /// Heights that were put back, until they are handed over.
+    pub(super) heights: Option<[Vec<f32>; 2]>,
 }
 
 impl WaveTile {
@@ -64,6 +66,7 @@ impl WaveTile {
             depths_changed: true,
             still: false,
             asleep: true,
+            heights: None,
         })
     }
 
@@ -161,6 +164,7 @@ impl WaveTile {
     /// Stills everything at once, as a cut of the camera does.
     pub fn reset(&mut self) {
         self.plan.clear();
+        self.heights = None;
         self.bound = CalmBound::default();
         self.still |= !self.asleep;
         self.asleep = true;
@@ -280,6 +284,7 @@ impl WaveTile {
         frame.params = Some(params);
         frame.settle = self.still || self.depths_changed || self.moved != [0; 2];
         frame.balance = true;
+        frame.heights = self.heights.take();
         frame.depths.clear();
         if self.depths_changed {
             frame.depths.extend_from_slice(&self.depths);

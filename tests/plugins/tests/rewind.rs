@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use rain_plugins::prelude::*;
 use rain_plugins::surface::WaterLevels;
 use rain_plugins::waves::PuddleWaves;
-use test_support::app::FRAME;
+use test_support::app::{FRAME, TestApp};
 use test_support::gpu;
 
 use crate::scenes::{depth, difference, hollow_at, rain};
@@ -69,4 +69,66 @@ fn a_restored_scene_looks_as_it_did_and_no_later_water_stays() {
     // It goes on from there as it did.
     test.frames(4, FRAME);
     assert!((depth(&mut test, 0.0, 0.0) - shallow).abs() < 0.002);
+}
+
+/// A foot that walks through the hollow's water, a frame for each step.
+fn walk(test: &mut TestApp, foot: Entity, steps: std::ops::Range<u8>) {
+    for step in steps {
+        let at = Transform::from_xyz(0.03 * f32::from(step) - 0.2, 0.0, 0.05);
+        test.world().entity_mut(foot).insert(at);
+        test.frames(1, FRAME);
+    }
+}
+
+fn foot(test: &mut TestApp) -> Entity {
+    let foot = WaterDisturber {
+        radius_m: 0.1,
+        ..default()
+    };
+    test.world().spawn((foot, Transform::from_xyz(-0.2, 0.0, 0.05))).id()
+}
+
+#[test]
+fn waves_are_saved_with_their_foot_and_go_on_bit_for_bit() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, weather) = hollow_at(Vec3::ZERO);
+    rain(&mut test, weather, 40.0, 200);
+    rain(&mut test, weather, 0.0, 2);
+    let walker = foot(&mut test);
+    walk(&mut test, walker, 0..8);
+    let saved = RainSnapshot::save(test.world()).expect("can be written");
+    assert!(saved.parts().any(|part| part == "seen_waves"));
+    assert!(saved.size_bytes() < 400_000, "{} bytes", saved.size_bytes());
+    walk(&mut test, walker, 8..16);
+    let end = RainSnapshot::save(test.world()).expect("can be written");
+    assert!(
+        !test.world().resource::<PuddleWaves>().tile().is_calm(),
+        "it makes waves"
+    );
+    let picture = test.picture();
+
+    // In the same world, and in one that has just begun.
+    let (mut fresh, _) = hollow_at(Vec3::ZERO);
+    let stranger = foot(&mut fresh);
+    fresh.frames(3, FRAME);
+    for (test, foot) in [(&mut test, walker), (&mut fresh, stranger)] {
+        saved.restore(test.world()).expect("fits");
+        walk(test, foot, 8..16);
+        let again = RainSnapshot::save(test.world()).expect("can be written");
+        assert_eq!(again.size_bytes(), end.size_bytes());
+        assert!(again == end, "the waves went on otherwise");
+        let found = difference(&picture, &test.picture());
+        assert!(found.mean < 0.02 && found.share == 0.0, "{found:?}");
+    }
+
+    // Damaged heights are refused, and nothing changes.
+    let before = RainSnapshot::save(test.world()).expect("can be written");
+    for (from, to) in [("cells:", "cells:1"), ("now_ns", "now"), ("depths:\"", "depths:\"!")] {
+        let damaged = saved.with_part("seen_waves", |text| text.replacen(from, to, 1));
+        let error = damaged.restore(test.world()).expect_err("damaged");
+        assert!(error.to_string().contains("seen_waves"), "{error}");
+        assert!(RainSnapshot::save(test.world()).expect("can be written") == before);
+    }
 }

@@ -1,7 +1,7 @@
 //! What one walks and drives on: asphalt, road paint, setts, slabs, kerb stones, grates.
 
 use super::{Picture, Texel, bake, grey, srgb};
-use crate::noise::{cellular, fbm, lattice, smoothstep, value};
+use crate::noise::{Rng, cellular, fbm, lattice, smoothstep, value};
 use glam::{Vec3, vec3};
 
 /// Width of the large asphalt picture, metres: the whole carriageway.
@@ -16,7 +16,53 @@ fn wandering(seed: u32, v: f32, centre: f32, sway: f32) -> f32 {
     centre + (fbm(seed, 0.0, v, 1, 9, 3) - 0.5) * sway
 }
 
-/// The carriageway's colour across its full width: aggregate, polished tracks, patches, tar seams, cracks.
+/// Rubber that braking tyres left on the carriageway.
+struct SkidMark {
+    /// Middle of the track, metres from the picture's left edge.
+    x: f32,
+    /// Where it starts, metres, and how long it is.
+    z: f32,
+    length: f32,
+    /// Share of the light that it takes where it is darkest.
+    strength: f32,
+}
+
+/// The skid marks of a seed: pairs, as a car leaves them, two to five of them.
+fn skid_marks(seed: u32) -> Vec<SkidMark> {
+    let mut rng = Rng::new(seed.into(), 55);
+    let cars = 2 + rng.below(4);
+    let mut marks = Vec::with_capacity(2 * cars);
+    for _ in 0..cars {
+        let lane = if rng.unit() < 0.5 { 1.75 } else { 5.25 };
+        let middle = lane + rng.range(-0.35, 0.35);
+        let (z, length) = (rng.range(0.0, ASPHALT_LENGTH_M), rng.range(2.0, 5.5));
+        let strength = rng.range(0.12, 0.3);
+        for side in [-0.75, 0.75] {
+            let strength = strength * rng.range(0.6, 1.0);
+            marks.push(SkidMark {
+                x: middle + side,
+                z,
+                length,
+                strength,
+            });
+        }
+    }
+    marks
+}
+
+/// Share of the light that rubber takes at (x, z). The picture repeats along z.
+fn rubber(marks: &[SkidMark], x: f32, z: f32) -> f32 {
+    marks.iter().fold(0.0_f32, |most, mark| {
+        let along = (z - mark.z).rem_euclid(ASPHALT_LENGTH_M) / mark.length;
+        // Tyres of 18 cm grip harder and harder, then the car stands.
+        let across = 1.0 - smoothstep(0.07, 0.1, (x - mark.x).abs());
+        let taken = mark.strength * across * smoothstep(0.0, 0.7, along) * (1.0 - smoothstep(0.97, 1.0, along));
+        most.max(taken)
+    })
+}
+
+/// The carriageway's colour across its full width: aggregate, polished tracks, skid marks, oil, patches, tar seams,
+/// cracks.
 #[must_use]
 pub fn asphalt_colour(seed: u32) -> Picture {
     let (w, h) = (768, 1536);
@@ -39,6 +85,7 @@ pub fn asphalt_colour(seed: u32) -> Picture {
             ]
         })
         .collect();
+    let marks = skid_marks(seed);
     Picture::new("asphalt-color", w, h, 3, move |px, py| {
         let (u, v) = ((px as f32 + 0.5) / w as f32, (py as f32 + 0.5) / h as f32);
         let (x, z) = (u * ASPHALT_WIDTH_M, v * ASPHALT_LENGTH_M);
@@ -65,6 +112,7 @@ pub fn asphalt_colour(seed: u32) -> Picture {
             }
             seam = seam.min(inside.abs());
         }
+        a *= 1.0 - rubber(&marks, x, z) * (0.75 + 0.5 * stone);
         let [joint, crack, hidden] = rows[py as usize];
         let seam = seam.min((x - joint).abs()).min((x - crack).abs() + hidden);
         let tar = 1.0 - smoothstep(0.008, 0.02, seam + 0.016 * wander.abs());

@@ -5,5 +5,6 @@ mod files;
 mod geometry;
 mod places;
 mod rain;
+mod road;
 mod scene;
 mod walls;

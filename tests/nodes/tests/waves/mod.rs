@@ -4,6 +4,7 @@ mod calm;
 mod map;
 mod parity;
 mod rain;
+mod saved;
 
 use rain_render::slope_mips::SlopeMipsGpu;
 use rain_render::waves::{
