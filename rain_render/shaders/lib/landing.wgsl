@@ -36,28 +36,32 @@ fn rain_cover_surface(map: texture_depth_2d, cover: CoverParams, projected: vec2
     return vec4<f32>(mix(along.x, along.y, f.y), slope, 1.0);
 }
 
-// The highest place that the mean rain meets over (x, z) `at`: from the top down, three corrections.
+// A place that the mean rain meets over (x, z) `at`: the highest thing, else what lies near the eye or near
+// the reference plane; three corrections each.
 // Error: on level ground and roofs 1 mm; within a texel of an edge nothing is found.
 fn rain_landing(map: texture_depth_2d, cover: CoverParams, at: vec2<f32>) -> RainLanding {
     var out: RainLanding;
-    var height = cover.highest;
-    for (var i = 0; i < 3; i++) {
-        let met = rain_cover_height(map, cover, rain_cover_project(cover, vec3<f32>(at.x, height, at.y)));
-        if (met < -1e8) {
-            return out;
+    var starts = array<f32, 3>(cover.highest, min(cover.highest, 0.0), min(cover.highest, cover.plane));
+    for (var start = 0; start < 3; start++) {
+        var height = starts[start];
+        for (var i = 0; i < 3; i++) {
+            height = rain_cover_height(map, cover, rain_cover_project(cover, vec3<f32>(at.x, height, at.y)));
         }
-        height = met;
-    }
-    let surface = rain_cover_surface(map, cover, rain_cover_project(cover, vec3<f32>(at.x, height, at.y)));
-    // Where rain slants past an edge no height agrees with its own ray.
-    if (surface.w < 0.5 || abs(surface.x - height) > 0.15) {
+        if (height < -1e8) {
+            continue;
+        }
+        let surface = rain_cover_surface(map, cover, rain_cover_project(cover, vec3<f32>(at.x, height, at.y)));
+        // Where rain slants past an edge no height agrees with its own ray.
+        if (surface.w < 0.5 || abs(surface.x - height) > 0.15) {
+            continue;
+        }
+        // The map's plane is sheared: dy = s·(dx + drift dy).
+        let drift = cover.inverse_speed * cover.wind;
+        let slope = surface.yz / max(1.0 - dot(surface.yz, drift), 0.2);
+        out.height = surface.x;
+        out.found = 1.0;
+        out.normal = normalize(vec3<f32>(-slope.x, 1.0, -slope.y));
         return out;
     }
-    // The map's plane is sheared: dy = s·(dx + drift dy).
-    let drift = cover.inverse_speed * cover.wind;
-    let slope = surface.yz / max(1.0 - dot(surface.yz, drift), 0.2);
-    out.height = surface.x;
-    out.found = 1.0;
-    out.normal = normalize(vec3<f32>(-slope.x, 1.0, -slope.y));
     return out;
 }

@@ -12,6 +12,7 @@ mod reflection;
 mod ring_layers;
 mod shader_functions;
 mod slope_mips;
+mod splash;
 mod water;
 mod water_map;
 mod waves;
