@@ -65,11 +65,15 @@ impl SplashShares {
         let most = shares.shares[0];
         let area = SizeClass::all().map(|class| crown_area(&class));
         let largest = area.into_iter().fold(0.0, f64::max);
-        let mut set = |scale: f64| {
-            for (share, area) in shares.shares.iter_mut().zip(area) {
-                *share = (scale * area / largest).min(most);
-            }
-            shares.expected_parts(extent)
+        let parts = parts_of_classes(extent);
+        let mut set = |scale: f64| -> f64 {
+            let classes = shares.shares.iter_mut().zip(area).zip(parts.iter().zip(shares.flux));
+            classes
+                .map(|((share, area), (parts, flux))| {
+                    *share = (scale * area / largest).min(most);
+                    flux * *share * parts
+                })
+                .sum()
         };
         // The smallest class that splashes has a thousandth of the largest crowns: above this all are drawn.
         let (mut low, mut high) = (1e-12, 1e6);
@@ -106,21 +110,22 @@ impl SplashShares {
     /// Crowns and drops that a view of `extent` shows at a time where every impact splashes. Units: none.
     #[must_use]
     pub fn expected_parts(&self, extent: &SplashExtent) -> f64 {
-        let angle = clamped(extent.angle_rad, 0.0, core::f64::consts::TAU);
-        let sector = |reach: f64| 0.5 * angle * ops::pow(clamped(reach, 0.0, 100.0), 2.0);
-        let exposure = clamped(extent.exposure_s, 0.0, 1.0);
-        SizeClass::all()
-            .iter()
-            .enumerate()
-            .map(|(k, class)| {
-                let d = 0.5 * (class.min_mm + class.max_mm);
-                let crowns = sector(extent.reach_m) * (crown_life_s(d) + exposure);
-                let grown = ((splash_excess(d, terminal_velocity(d), 0.0) - 1.0) / 18.0).clamp(0.0, 1.0);
-                let drops = sector(extent.near_m) * FLIGHT_S * (5.0 + 25.0 * grown);
-                self.flux[k] * self.shares[k] * (crowns + drops)
-            })
-            .sum()
+        let parts = parts_of_classes(extent);
+        (0..CLASS_COUNT).map(|k| self.flux[k] * self.shares[k] * parts[k]).sum()
     }
+}
+
+/// Crowns and drops that a view shows of a class, for each impact on a square metre and second. Units: m² s.
+fn parts_of_classes(extent: &SplashExtent) -> [f64; CLASS_COUNT] {
+    let angle = clamped(extent.angle_rad, 0.0, core::f64::consts::TAU);
+    let sector = |reach: f64| 0.5 * angle * ops::pow(clamped(reach, 0.0, 100.0), 2.0);
+    let exposure = clamped(extent.exposure_s, 0.0, 1.0);
+    SizeClass::all().map(|class| {
+        let d = 0.5 * (class.min_mm + class.max_mm);
+        let crowns = sector(extent.reach_m) * (crown_life_s(d) + exposure);
+        let grown = ((splash_excess(d, terminal_velocity(d), 0.0) - 1.0) / 18.0).clamp(0.0, 1.0);
+        crowns + sector(extent.near_m) * FLIGHT_S * (5.0 + 25.0 * grown)
+    })
 }
 
 /// Area of a crown of the class's largest drop from the side, times how long it stands; 0 where none splashes.

@@ -146,7 +146,10 @@ pub(super) fn prepare_splashes(
             environment: environment.map(|(i, _)| -> &wgpu::TextureView { &i.texture_view }),
             levels: level_image.map(|i| -> &wgpu::TextureView { &i.texture_view }),
         };
-        let slot = splashes.views.entry(entity).or_insert_with(|| SplashViewGpu::new(device));
+        let slot = splashes
+            .views
+            .entry(entity)
+            .or_insert_with(|| SplashViewGpu::new(device));
         slot.prepare(device, &queue, &splashes.gpu, &input, textures);
     }
 }

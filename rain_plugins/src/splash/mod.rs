@@ -4,5 +4,5 @@
 
 mod view;
 
-pub use view::{MAX_SPLASH_BUDGET, MAX_SPLASH_DISTANCE_M, SplashMask, SplashPlugin, SplashSettings, SplashViewFrame};
 pub(crate) use view::SplashShot;
+pub use view::{MAX_SPLASH_BUDGET, MAX_SPLASH_DISTANCE_M, SplashMask, SplashPlugin, SplashSettings, SplashViewFrame};

@@ -56,7 +56,13 @@ impl SplashSettings {
     pub fn validated(self) -> Result<Self, ConfigError> {
         let furthest = f64::from(MAX_SPLASH_DISTANCE_M);
         in_range("distance_m", self.distance_m.into(), 0.0, furthest, "0 to 50 m")?;
-        in_range("drops_distance_m", self.drops_distance_m.into(), 0.0, furthest, "0 to 50 m")?;
+        in_range(
+            "drops_distance_m",
+            self.drops_distance_m.into(),
+            0.0,
+            furthest,
+            "0 to 50 m",
+        )?;
         let budget = f64::from(self.budget.unwrap_or_default());
         in_range("budget", budget, 0.0, f64::from(MAX_SPLASH_BUDGET), "0 to 1000000")?;
         Ok(self)
@@ -143,7 +149,7 @@ impl Plugin for SplashPlugin {
 }
 
 /// The last good settings; what is wrong is named in the log once.
-fn good_settings(settings: &Ref<'_, SplashSettings>, kept: &mut Option<SplashSettings>) -> SplashSettings {
+fn good_settings(settings: &Res<SplashSettings>, kept: &mut Option<SplashSettings>) -> SplashSettings {
     if kept.is_none() || settings.is_changed() {
         match settings.validated() {
             Ok(good) => *kept = Some(good),
@@ -173,7 +179,7 @@ fn aim_splashes(
         &mut SplashViewFrame,
     )>,
 ) {
-    let settings = good_settings(&settings.into(), &mut kept);
+    let settings = good_settings(&settings, &mut kept);
     let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
     let now = clock.now_s() + since_tick;
     let mut any = false;
