@@ -158,7 +158,7 @@ fn inverse(class: &SizeClass, spectrum: &Spectrum) -> [f32; 3] {
 /// A view's eye and moment on the grid: integers and what is left, so that single precision suffices anywhere, at any
 /// time.
 ///
-/// Error: 1e-6 m at 100 km, 2e-9 s after a week.
+/// Error: 1e-6 m at 100 km, 4e-9 s after a week.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SplashAnchor {
     /// Cell under the eye (x, z; low 32 bits).
