@@ -405,6 +405,16 @@ struct SplashPart {
     form: vec4<f32>,
 }
 
+// A part as it was found.
+struct SplashFind {
+    part: SplashPart,
+    // Its cell and slot, and its number there.
+    id: u32,
+    number: u32,
+    pad_a: u32,
+    pad_b: u32,
+}
+
 // Arguments of the draw, and how many parts there were.
 struct SplashDraw {
     vertices: u32,
@@ -412,4 +422,6 @@ struct SplashDraw {
     first_vertex: u32,
     first_instance: u32,
     found: u32,
+    // Parts noted so far in this frame; 0 between frames.
+    noted: atomic<u32>,
 }

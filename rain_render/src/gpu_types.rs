@@ -327,6 +327,17 @@ pub struct SplashPart {
     pub form: [f32; 4],
 }
 
+/// A part as it was found.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SplashFind {
+    pub part: SplashPart,
+    pub id: u32,
+    pub number: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+}
+
 /// Arguments of the draw of splashes, and how many parts there were.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Pod, Zeroable)]
@@ -336,6 +347,7 @@ pub struct SplashDraw {
     pub first_vertex: u32,
     pub first_instance: u32,
     pub found: u32,
+    pub noted: u32,
 }
 
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
@@ -378,6 +390,7 @@ pub fn layouts() -> Vec<Layout> {
             stream, viewport, fraction, cell, focal, near, exposure, contrast, soft, reach, near_reach, film, since, span,
             capacity, pad_a, pad_b, pad_c, cover, levels, counts, limits, classes),
         layout!(SplashPart: ends, shape, light, form),
-        layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found),
+        layout!(SplashFind: part, id, number, pad_a, pad_b),
+        layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
     ]
 }

@@ -9,10 +9,8 @@ use crate::error::clamped;
 use crate::ops;
 use crate::rainfall::{CLASS_COUNT, SizeClass, Spectrum, terminal_velocity};
 
-/// How long a secondary drop is in the air, about. Units: s.
-const FLIGHT_S: f64 = 0.15;
-/// A film that the sizes of crowns are compared on. Units: mm.
-const FILM_MM: f64 = 0.2;
+/// How long a secondary drop is bright enough to be drawn, about, at the default contrast. Units: s.
+const SHOWN_S: f64 = 0.02;
 
 /// The ground that a view draws splashes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +23,8 @@ pub struct SplashExtent {
     pub angle_rad: f64,
     /// Shutter time. Units: s. Domain: [0, 1].
     pub exposure_s: f64,
+    /// Thinnest film on the ground. Units: mm. Domain: [0, 1e6].
+    pub film_mm: f64,
 }
 
 /// Impacts by size class, and the shares of them that are drawn.
@@ -58,13 +58,13 @@ impl SplashShares {
 
     /// Those that are drawn for `budget` crowns and drops in a view of `extent`; a budget that is not above 0 draws none.
     ///
-    /// Classes of which no drop splashes on dry ground are left out.
+    /// Classes of which no drop splashes on the film are left out.
     #[must_use]
     pub fn for_budget(spectrum: &Spectrum, extent: &SplashExtent, budget: f64) -> Self {
         let mut shares = Self::all(spectrum);
         let most = shares.shares[0];
-        let area = SizeClass::all().map(|class| crown_area(&class));
-        let largest = area.into_iter().fold(0.0, f64::max);
+        let area = SizeClass::all().map(|class| crown_area(&class, extent.film_mm));
+        let largest = area.into_iter().fold(f64::MIN_POSITIVE, f64::max);
         let parts = parts_of_classes(extent);
         let mut set = |scale: f64| -> f64 {
             let classes = shares.shares.iter_mut().zip(area).zip(parts.iter().zip(shares.flux));
@@ -124,19 +124,19 @@ fn parts_of_classes(extent: &SplashExtent) -> [f64; CLASS_COUNT] {
         let d = 0.5 * (class.min_mm + class.max_mm);
         let crowns = sector(extent.reach_m) * (crown_life_s(d) + exposure);
         let grown = ((splash_excess(d, terminal_velocity(d), 0.0) - 1.0) / 18.0).clamp(0.0, 1.0);
-        crowns + sector(extent.near_m) * FLIGHT_S * (5.0 + 25.0 * grown)
+        crowns + sector(extent.near_m) * SHOWN_S * (5.0 + 25.0 * grown)
     })
 }
 
 /// Area of a crown of the class's largest drop from the side, times how long it stands; 0 where none splashes.
-fn crown_area(class: &SizeClass) -> f64 {
+fn crown_area(class: &SizeClass, film_mm: f64) -> f64 {
     let d = class.max_mm;
     let speed = terminal_velocity(d);
-    if splash_excess(d, speed, 0.0) <= 1.0 {
+    if splash_excess(d, speed, film_mm) <= 1.0 {
         return 0.0;
     }
     let life = crown_life_s(d);
-    // Below the threshold on the film a drop of dry ground's: low, but not nothing.
-    let height = crown_height_m(d, speed, FILM_MM, 0.5 * life).max(0.05e-3 * d);
-    crown_radius_m(d, speed, FILM_MM, life) * height * life
+    // Just above the threshold: low, but not nothing.
+    let height = crown_height_m(d, speed, film_mm, 0.5 * life).max(0.05e-3 * d);
+    crown_radius_m(d, speed, film_mm, life) * height * life
 }

@@ -13,6 +13,7 @@ use crate::cover::{AirAroundView, CoverMap};
 use crate::rainfall::{RainView, SoftwareAdapter, ViewMotion, fill_containers, view_volume};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
+use crate::surface::SurfaceState;
 
 /// Largest accepted number of crowns and drops in a view.
 pub const MAX_SPLASH_BUDGET: u32 = 1_000_000;
@@ -20,13 +21,16 @@ pub const MAX_SPLASH_BUDGET: u32 = 1_000_000;
 /// Furthest accepted reach of splashes. Units: m.
 pub const MAX_SPLASH_DISTANCE_M: f32 = 50.0;
 
+/// Tables are made anew when the film has grown or shrunk by this. Units: mm.
+const FILM_STEP_MM: f64 = 0.02;
+
 /// How splashes of rain are drawn, in every view. Contrast, shutter and soft fade are those of each view's [`RainView`].
 #[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Resource, Default)]
 pub struct SplashSettings {
     /// Draws splashes. Views whose [`RainView`] is off or has a streak budget of 0 draw none in any case.
     pub enabled: bool,
-    /// How many crowns and thrown drops a view draws, about; twice as many is the hard bound. `None`: 8,000 on a software
+    /// How many crowns and thrown drops a view draws, about; twice as many is the hard bound. `None`: 4,000 on a software
     /// adapter, 40,000 on a GPU. Domain: [0, 10⁶]. The number is spent on the largest splashes; those that are drawn
     /// show the light of those that are not.
     pub budget: Option<u32>,
@@ -169,6 +173,7 @@ fn aim_splashes(
     report: Res<RainReport>,
     air: Res<AirAroundView>,
     cover: Option<Res<CoverMap>>,
+    surface: Option<Res<SurfaceState>>,
     mut views: Query<(
         Entity,
         &RainView,
@@ -182,6 +187,8 @@ fn aim_splashes(
     let settings = good_settings(&settings, &mut kept);
     let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
     let now = clock.now_s() + since_tick;
+    // In steps, so that tables last while the film grows; downwards, so that nothing that splashes is left out.
+    let film_mm = surface.map_or(0.0, |s| (f64::from(s.state.y) / FILM_STEP_MM).floor() * FILM_STEP_MM);
     let mut any = false;
     for (entity, view, camera, projection, transform, motion, mut frame) in &mut views {
         any = true;
@@ -215,7 +222,7 @@ fn aim_splashes(
         }
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
-        let budget = settings.budget.unwrap_or(if software.0 { 8_000 } else { 40_000 });
+        let budget = settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 });
         let near_m = settings.drops_distance_m.min(settings.distance_m);
         let source = Source {
             seed: seed.0,
@@ -225,6 +232,7 @@ fn aim_splashes(
                 near_m: near_m.into(),
                 angle_rad: 2.0 * libm::atan(1.0 / f64::from(clip_from_view.x_axis.x).abs().max(1e-3)),
                 exposure_s: view.exposure_s.into(),
+                film_mm,
             },
             budget,
         };

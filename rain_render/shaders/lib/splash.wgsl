@@ -55,6 +55,12 @@ fn rain_thrown_count(excess: f32, key: vec3<u32>) -> u32 {
     return min(u32(mean + rain_unit(rain_pcg3d(key).x)), 30u);
 }
 
+// Diameter of thrown drop `index` in diameters of the drop that fell.
+fn rain_thrown_share(key: vec3<u32>, index: u32) -> f32 {
+    let u = rain_unit(rain_pcg3d(vec3<u32>(key.x ^ rain_pcg(index), key.y, key.z + index)).x);
+    return 0.05 + 0.25 * u * u;
+}
+
 // Velocity, m/s, and diameter (w, mm) of thrown drop `index` of `count`. Error: diameter 1e-6 relative, velocity 1e-5 of the impact's, against the CPU's.
 fn rain_thrown_drop(
     diameter_mm: f32,
@@ -97,6 +103,9 @@ fn rain_thrown_place(velocity: vec3<f32>, diameter_mm: f32, age: f32) -> vec3<f3
 // Opacity of a crown's sheet, seen square on. Chosen by eye.
 const RAIN_CROWN_OPACITY: f32 = 0.5;
 
+// How far its jets rise over the height of the sheet. Chosen by eye.
+const RAIN_CROWN_JETS: f32 = 2.2;
+
 // How much of a pixel a crown covers, 0..1: its front and its back wall as seen from an eye that looks down on it. `at` is
 // the pixel from the middle of the foot, px, y along the normal; `radius`, `height` and `minor` (half the depth of the
 // foot's ellipse) in px; `seed` 0..1 gives the jets.
@@ -112,7 +121,8 @@ fn rain_crown_sheet(at: vec2<f32>, radius: f32, height: f32, minor: f32, seed: f
     for (var wall = 0; wall < 2; wall++) {
         let foot = select(minor, -minor, wall == 0) * q;
         let turn = select(3.1415927 - angle, angle, wall == 0);
-        let rim = height * (0.65 + 0.35 * abs(sin(jets * turn + 6.2831853 * seed)));
+        let jet = pow(max(cos(jets * turn + 6.2831853 * seed), 0.0), 6.0);
+        let rim = height * mix(0.55, RAIN_CROWN_JETS, jet);
         let inside = clamp(at.y - foot + 0.5, 0.0, 1.0) * clamp(foot + rim - at.y + 0.5, 0.0, 1.0);
         clear *= 1.0 - min(0.6 * thick, 1.0) * inside;
     }

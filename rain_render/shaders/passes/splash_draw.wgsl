@@ -45,7 +45,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> SplashVertex {
         let across = vec2<f32>(-up.y, up.x);
         let radius = part.shape.y;
         let minor = part.form.y;
-        let top = max(part.shape.z + minor, 0.5) + 0.5;
+        let top = max(RAIN_CROWN_JETS * part.shape.z + minor, 0.5) + 0.5;
         let foot = -max(minor, 0.5) - 0.5;
         out.local = vec2<f32>(side * (radius + 0.5), select(foot, top, end > 0.0));
         out.size = vec2<f32>(radius, part.shape.z);

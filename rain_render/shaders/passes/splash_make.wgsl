@@ -1,4 +1,5 @@
-// Splashes of a view from hashes: counts, then their sums, then crowns and thrown drops in that order.
+// Splashes of a view from hashes: crowns and thrown drops as they are found, the sums of their numbers, and then the same in
+// the order of cells and slots, which does not change from run to run.
 
 @group(0) @binding(0) var<uniform> view: SplashView;
 @group(0) @binding(1) var<storage, read_write> places: array<u32>;
@@ -8,11 +9,14 @@
 @group(0) @binding(5) var environment: texture_cube<f32>;
 @group(0) @binding(6) var environment_sampler: sampler;
 @group(0) @binding(7) var level_map: texture_2d<f32>;
+@group(0) @binding(8) var<storage, read_write> finds: array<SplashFind>;
 
 // Crowns are gone after this, s.
 const CROWN_END: f32 = 0.02;
 // What adds less than this to a pixel is not drawn.
 const LEAST_OPACITY: f32 = 0.002;
+// The same for thrown drops, of which there are many.
+const LEAST_DROP_OPACITY: f32 = 0.01;
 
 fn shine(p: vec3<f32>) -> vec3<f32> {
     return rain_drop_shine(
@@ -132,6 +136,11 @@ fn crown(found: Found) -> SplashPart {
 // Thrown drop `index`, or nothing.
 fn thrown(found: Found, count: u32, index: u32) -> SplashPart {
     var part: SplashPart;
+    // At rest, seen from where the splash is, it would cover this much.
+    let most = found.diameter * 1e-3 * rain_thrown_share(found.key, index) * view.focal / max(length(found.place) - 0.5, 0.05);
+    if (view.contrast * found.weight * most * most < LEAST_DROP_OPACITY) {
+        return part;
+    }
     let drop = rain_thrown_drop(found.diameter, found.velocity, found.normal, found.key, count, index);
     let now = rain_thrown_place(drop.xyz, drop.w, found.age);
     let before = rain_thrown_place(drop.xyz, drop.w, max(found.age - view.exposure, 0.0));
@@ -157,7 +166,7 @@ fn thrown(found: Found, count: u32, index: u32) -> SplashPart {
     let flown = min(found.age / view.exposure, 1.0);
     let opacity = min(1.0, found.weight * flown * 0.7853982 * size * size / (width * span));
     let shown = fade * rain_contrast(opacity, view.contrast);
-    if (shown < LEAST_OPACITY) {
+    if (shown < LEAST_DROP_OPACITY) {
         return part;
     }
     part.ends = vec4<f32>(a, b);
@@ -167,8 +176,16 @@ fn thrown(found: Found, count: u32, index: u32) -> SplashPart {
     return part;
 }
 
-// Finds the splashes of one cell and slot and counts their parts; writes them from `first` on where `writes`.
-fn cell_and_slot(id: u32, first: u32, writes: bool) -> u32 {
+// Notes part `number` of a cell and slot.
+fn note(part: SplashPart, id: u32, number: u32) {
+    let at = atomicAdd(&draw.noted, 1u);
+    if (at < view.capacity) {
+        finds[at] = SplashFind(part, id, number, 0u, 0u);
+    }
+}
+
+// Finds the splashes of one cell and slot; the number of their parts.
+fn cell_and_slot(id: u32) -> u32 {
     let side = 2u * view.span + 1u;
     let back = id % u32(RAIN_SPLASH_SLOTS);
     let column = id / u32(RAIN_SPLASH_SLOTS);
@@ -241,9 +258,7 @@ fn cell_and_slot(id: u32, first: u32, writes: bool) -> u32 {
         }
         let sheet = crown(found);
         if (sheet.shape.w > 0.0) {
-            if (writes && first + parts_found < view.capacity) {
-                parts[first + parts_found] = sheet;
-            }
+            note(sheet, id, parts_found);
             parts_found++;
         }
         if (distance > view.near_reach) {
@@ -253,9 +268,7 @@ fn cell_and_slot(id: u32, first: u32, writes: bool) -> u32 {
         for (var i = 0u; i < drops; i++) {
             let drop = thrown(found, drops, i);
             if (drop.shape.w > 0.0) {
-                if (writes && first + parts_found < view.capacity) {
-                    parts[first + parts_found] = drop;
-                }
+                note(drop, id, parts_found);
                 parts_found++;
             }
         }
@@ -268,10 +281,11 @@ fn invocations() -> u32 {
     return side * side * u32(RAIN_SPLASH_SLOTS);
 }
 
+// Error: places 1e-4 m, and as the functions say.
 @compute @workgroup_size(64)
-fn count(@builtin(global_invocation_id) id: vec3<u32>) {
+fn find(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x < invocations()) {
-        places[id.x] = cell_and_slot(id.x, 0u, false);
+        places[id.x] = cell_and_slot(id.x);
     }
 }
 
@@ -300,6 +314,7 @@ fn add(@builtin(local_invocation_index) lane: u32) {
     }
     if (lane == 255u) {
         draw.found = before;
+        atomicStore(&draw.noted, 0u);
         draw.vertices = 6u * min(before, view.capacity);
         draw.instances = 1u;
         draw.first_vertex = 0u;
@@ -307,10 +322,12 @@ fn add(@builtin(local_invocation_index) lane: u32) {
     }
 }
 
-// Error: places 1e-4 m, and as the functions say.
+// Where there is no room for all, those that were found first are kept as they are.
 @compute @workgroup_size(64)
-fn make(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x < invocations()) {
-        _ = cell_and_slot(id.x, places[id.x], true);
+fn sort(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x < min(draw.found, view.capacity)) {
+        let find = finds[id.x];
+        let place = select(id.x, places[find.id] + find.number, draw.found <= view.capacity);
+        parts[place] = find.part;
     }
 }

@@ -7,12 +7,12 @@ use crate::rainfall::COVERAGE_FORMAT;
 pub fn encode_splash_make(pass: &mut wgpu::ComputePass, gpu: &SplashGpu, view: &SplashViewGpu) {
     let Some(bind_group) = &view.make else { return };
     pass.set_bind_group(0, bind_group, &[]);
-    pass.set_pipeline(&gpu.count);
+    pass.set_pipeline(&gpu.find);
     pass.dispatch_workgroups(view.invocations.div_ceil(64), 1, 1);
     pass.set_pipeline(&gpu.add);
     pass.dispatch_workgroups(1, 1, 1);
-    pass.set_pipeline(&gpu.make);
-    pass.dispatch_workgroups(view.invocations.div_ceil(64), 1, 1);
+    pass.set_pipeline(&gpu.sort);
+    pass.dispatch_workgroups(view.room.div_ceil(64), 1, 1);
 }
 
 /// Draws them over a target of `format` with `samples` samples.

@@ -3,8 +3,8 @@
 //! Inputs: tables of the rain (`SplashField` of `rain_core`), the view, the cover map (height and normal of what rain
 //! lands on), the map of standing water, an environment cube map. Output: premultiplied quads over the view's colour
 //! target, depth-tested, and on demand a coverage mask. Nothing is stored or uploaded for a splash.
-//! Cost: one invocation for a cell of 0.25 m and a slot of 0.1 s, twice (counts, then parts, in an order that does not
-//! change from run to run); six vertices a part; pixels covered.
+//! Cost: one invocation for a cell of 0.25 m and a slot of 0.1 s, a copy of each part into an order that does not change from
+//! run to run; six vertices a part; pixels covered.
 //! Skipped by the host when nothing falls, the view is closed in or nothing is known of the ground.
 
 mod encode;

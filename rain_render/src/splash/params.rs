@@ -44,7 +44,7 @@ pub struct SplashInput<'a> {
     pub near_reach_m: f32,
     /// Film on what stands under no water. Units: mm.
     pub film_mm: f32,
-    /// Crowns and drops for which there is room; more are left out, those of the last cells.
+    /// Crowns and drops for which there is room; more are left out, any of them.
     pub capacity: u32,
     /// Surroundings.
     pub lighting: Lighting,

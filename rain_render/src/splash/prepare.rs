@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::bindings::{compute_pipeline, one_texel, storage_entry, texture_entry, uniform_entry};
 use crate::compose;
-use crate::gpu_types::{SplashDraw, SplashPart, SplashView};
+use crate::gpu_types::{SplashDraw, SplashFind, SplashPart, SplashView};
 use crate::rainfall::{COVERAGE_FORMAT, DEPTH_FORMAT};
 
 use super::SplashInput;
@@ -16,9 +16,9 @@ type DrawKey = (wgpu::TextureFormat, u32, bool);
 #[derive(Debug)]
 pub struct SplashGpu {
     make_layout: wgpu::BindGroupLayout,
-    pub(super) count: wgpu::ComputePipeline,
+    pub(super) find: wgpu::ComputePipeline,
     pub(super) add: wgpu::ComputePipeline,
-    pub(super) make: wgpu::ComputePipeline,
+    pub(super) sort: wgpu::ComputePipeline,
     draw_layout: wgpu::BindGroupLayout,
     draw_pipeline_layout: wgpu::PipelineLayout,
     draw_shader: wgpu::ShaderModule,
@@ -48,11 +48,13 @@ pub struct SplashTextures<'a> {
 pub struct SplashViewGpu {
     uniform: wgpu::Buffer,
     places: wgpu::Buffer,
+    finds: wgpu::Buffer,
     parts: wgpu::Buffer,
     pub(super) arguments: wgpu::Buffer,
     cells: u32,
     capacity: u32,
     pub(super) invocations: u32,
+    pub(super) room: u32,
     pub(super) make: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
 }
@@ -89,11 +91,12 @@ impl SplashGpu {
                     wgpu::TextureSampleType::Float { filterable: false },
                     wgpu::TextureViewDimension::D2,
                 ),
+                storage_entry(8, compute, false),
             ],
         });
         let module = compose::shader(device, "splash_make");
         let pipeline = |entry: &str| compute_pipeline(device, "rain splash make", &module, entry, &[&make_layout]);
-        let (count, add, make) = (pipeline("count"), pipeline("add"), pipeline("make"));
+        let (find, add, sort) = (pipeline("find"), pipeline("add"), pipeline("sort"));
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain splash draw"),
@@ -110,9 +113,9 @@ impl SplashGpu {
         });
         Self {
             make_layout,
-            count,
+            find,
             add,
-            make,
+            sort,
             draw_layout,
             draw_pipeline_layout,
             draw_shader: compose::shader(device, "splash_draw"),
@@ -214,6 +217,7 @@ impl SplashViewGpu {
                 wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             ),
             places: buffer(device, "rain splash places", 4, storage),
+            finds: buffer(device, "rain splash finds", size_of::<SplashFind>(), storage),
             parts: buffer(device, "rain splash parts", size_of::<SplashPart>(), storage),
             arguments: buffer(
                 device,
@@ -224,6 +228,7 @@ impl SplashViewGpu {
             cells: 1,
             capacity: 1,
             invocations: 0,
+            room: 0,
             make: None,
             draw: None,
         }
@@ -239,13 +244,19 @@ impl SplashViewGpu {
         textures: SplashTextures,
     ) {
         let storage = wgpu::BufferUsages::STORAGE;
-        self.invocations = input.invocations();
+        (self.invocations, self.room) = (input.invocations(), input.capacity);
         if self.invocations > self.cells {
             self.cells = self.invocations;
             self.places = buffer(device, "rain splash places", self.cells as usize * 4, storage);
         }
         if input.capacity > self.capacity {
             self.capacity = input.capacity;
+            self.finds = buffer(
+                device,
+                "rain splash finds",
+                self.capacity as usize * size_of::<SplashFind>(),
+                storage,
+            );
             self.parts = buffer(
                 device,
                 "rain splash parts",
@@ -273,6 +284,7 @@ impl SplashViewGpu {
                 entry(5, wgpu::BindingResource::TextureView(&environment)),
                 entry(6, wgpu::BindingResource::Sampler(&gpu.sampler)),
                 entry(7, wgpu::BindingResource::TextureView(&levels)),
+                entry(8, self.finds.as_entire_binding()),
             ],
         }));
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -292,7 +304,7 @@ impl SplashViewGpu {
         size_of::<SplashView>()
             + size_of::<SplashDraw>()
             + self.cells as usize * 4
-            + self.capacity as usize * size_of::<SplashPart>()
+            + self.capacity as usize * (size_of::<SplashFind>() + size_of::<SplashPart>())
     }
 
     /// The crowns and drops that were made, for reading back.

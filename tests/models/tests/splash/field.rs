@@ -19,6 +19,7 @@ const EXTENT: SplashExtent = SplashExtent {
     near_m: 3.0,
     angle_rad: 1.6,
     exposure_s: 1.0 / 60.0,
+    film_mm: 0.0,
 };
 
 /// Every impact in `cells` × `cells` cells during `slots` slots.
@@ -234,6 +235,7 @@ fn any_rain_and_any_eye_give_sound_splashes() {
         near_m: -1.0,
         angle_rad: f64::INFINITY,
         exposure_s: f64::NAN,
+        film_mm: f64::NAN,
     };
     let shares = SplashShares::for_budget(&spectrum(25.0), &none, 100.0);
     assert!((0..CLASS_COUNT).all(|k| (0.0..=1.0).contains(&shares.share(k))));

@@ -75,6 +75,7 @@ impl Scene {
             near_m: self.near_reach_m.into(),
             angle_rad: std::f64::consts::TAU,
             exposure_s: self.exposure_s.into(),
+            film_mm: self.film_mm.into(),
         }
     }
 
