@@ -24,6 +24,7 @@
 //! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
 //! | [`cover::CoverPlugin`] | what stops rain |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
+//! | [`splash::SplashPlugin`] | splashes where the rain lands |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
 //! | [`render_adapter::RainRenderPlugin`] | the passes |
@@ -35,6 +36,7 @@ pub mod report;
 #[cfg(feature = "scenario")]
 pub mod scenario;
 pub mod schedule;
+pub mod splash;
 pub mod surface;
 pub mod waves;
 
@@ -57,6 +59,7 @@ impl PluginGroup for RainPlugins {
             .add(render_adapter::RainRenderPlugin)
             .add(cover::CoverPlugin)
             .add(rainfall::RainfallPlugin)
+            .add(splash::SplashPlugin)
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
     }
@@ -92,6 +95,7 @@ pub mod prelude {
     pub use crate::rainfall::RainView;
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
+    pub use crate::splash::{SplashMask, SplashSettings};
     pub use crate::surface::{
         AutoPaint, AutoPaintDone, AutoPaintError, FilmFlow, Gap, GroundMapSettings, KeepDry, MovesInRain, NoisePuddles,
         PaintSource, PlanarReflection, PuddlePaint, SceneGap, ShowPaint, SurfaceWetting, WaterAppearance,
@@ -99,7 +103,8 @@ pub mod prelude {
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
-        RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
+        RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, splash::SplashPlugin, surface::WetSurfacePlugin,
+        waves::WavesPlugin,
     };
     pub use rain_core::surface::SurfaceState;
     pub use rain_ecs::prelude::*;

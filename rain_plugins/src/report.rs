@@ -18,6 +18,8 @@ pub enum PassName {
     Waves,
     /// The mirrored view.
     Reflection,
+    /// Splashes of rain.
+    Splash,
     /// Streaks near the eye.
     Rainfall,
     /// Measurement masks (only when asked for).
@@ -34,6 +36,7 @@ impl PassName {
             Self::Ripples => "ripples",
             Self::Waves => "waves",
             Self::Reflection => "reflection",
+            Self::Splash => "splash",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
         }
@@ -49,7 +52,7 @@ pub enum SkipReason {
     NoRain,
     /// No standing water; for a mirror, none ahead, or the eye is under it.
     NoWater,
-    /// There is no ground of the simulation.
+    /// There is no ground of the simulation; for splashes, none that is known to the cover map.
     NoGround,
     /// Nothing has changed that could be seen.
     Settled,

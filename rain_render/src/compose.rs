@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::RING_FADE;
 
@@ -31,6 +32,7 @@ pub const LIBRARIES: &[Library] = library![
     "cover",
     "streak",
     "drop_light",
+    "surroundings",
     "wetness",
     "standing_water",
     "ground_memory",
@@ -46,7 +48,9 @@ pub const LIBRARIES: &[Library] = library![
     "water_map",
     "rain_areas",
     "streak_texture",
-    "lattice"
+    "lattice",
+    "landing",
+    "splash"
 ];
 
 /// A pass's own source.
@@ -75,7 +79,9 @@ pub const PASSES: &[Pass] = passes![
     "ring_layers",
     "water_map",
     "streak_texture",
-    "lattice_draw"
+    "lattice_draw",
+    "splash_make",
+    "splash_draw"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
@@ -109,6 +115,9 @@ pub fn constants() -> String {
         ("RAIN_RING_FADE", f64::from(RING_FADE)),
         ("RAIN_FLOW_PERIOD_S", FLOW_PERIOD_S),
         ("RAIN_FLOW_NOISE", FLOW_NOISE),
+        ("RAIN_SPLASH_CELL_M", SPLASH_CELL_M),
+        ("RAIN_SPLASH_SLOT_S", SPLASH_SLOT_S),
+        ("RAIN_SPLASH_SLOTS", f64::from(SPLASH_SLOTS)),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }

@@ -6,6 +6,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use rain_core::rainfall::{CLASS_COUNT, MAX_LAMPS};
+use rain_core::splash::SPLASH_COUNTS;
 use rain_core::weather::SurfaceClass;
 
 use crate::reflection::MAX_MIRRORS;
@@ -342,6 +343,76 @@ pub struct LatticeParams {
     pub lamp: [LampParams; MAX_LAMPS],
 }
 
+/// A view of splashes.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SplashView {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub clip_from_eye_before: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub planes: [[f32; 4]; 4],
+    pub wind: [f32; 4],
+    pub stream: [u32; 4],
+    pub viewport: [f32; 2],
+    pub fraction: [f32; 2],
+    pub cell: [i32; 2],
+    pub focal: f32,
+    pub near: f32,
+    pub exposure: f32,
+    pub contrast: f32,
+    pub soft: f32,
+    pub reach: f32,
+    pub near_reach: f32,
+    pub film: f32,
+    pub since: f32,
+    pub span: u32,
+    pub capacity: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+    pub pad_c: u32,
+    pub cover: CoverParams,
+    pub levels: LevelMapParams,
+    pub counts: [u32; SPLASH_COUNTS],
+    pub limits: [u32; CLASS_COUNT],
+    pub classes: [[f32; 4]; CLASS_COUNT],
+}
+
+/// A crown or a thrown drop to draw; written and read by the GPU only.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SplashPart {
+    pub ends: [f32; 4],
+    pub shape: [f32; 4],
+    pub light: [f32; 4],
+    pub form: [f32; 4],
+}
+
+/// A part as it was found.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SplashFind {
+    pub part: SplashPart,
+    pub id: u32,
+    pub number: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+}
+
+/// Arguments of the draw of splashes, and how many parts there were.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct SplashDraw {
+    pub vertices: u32,
+    pub instances: u32,
+    pub first_vertex: u32,
+    pub first_instance: u32,
+    pub found: u32,
+    pub noted: u32,
+}
+
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
 pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
 
@@ -385,5 +456,11 @@ pub fn layouts() -> Vec<Layout> {
         layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
             lamps, pad_a, pad_b, pad_c, cover, lamp),
         layout!(Card: centre, facing, turn, place, layers),
+        layout!(SplashView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, planes, wind,
+            stream, viewport, fraction, cell, focal, near, exposure, contrast, soft, reach, near_reach, film, since, span,
+            capacity, pad_a, pad_b, pad_c, cover, levels, counts, limits, classes),
+        layout!(SplashPart: ends, shape, light, form),
+        layout!(SplashFind: part, id, number, pad_a, pad_b),
+        layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
     ]
 }

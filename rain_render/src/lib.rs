@@ -14,6 +14,7 @@ pub mod rainfall;
 pub mod reflection;
 pub mod ring_layers;
 pub mod slope_mips;
+pub mod splash;
 pub mod streak_textures;
 pub mod water_map;
 pub mod waves;

@@ -69,6 +69,23 @@ pub fn crown_opacity(diameter_mm: f64, time_s: f64) -> f64 {
     1.0 - t * t * (3.0 - 2.0 * t)
 }
 
+/// How long a crown has been seen during the exposure that ends `age_s` after the impact: ∫ [`crown_opacity`] dt. Units: s.
+///
+/// `diameter_mm` as [`crown_life_s`], `age_s` and `exposure_s` in s, held in [0, 1e6]; before the impact 0. Exposures add
+/// up: two halves see what a whole one does. Source: closed form of the fading.
+///
+/// Error: 1e-16 s and 2e-15 of the life; a look.
+#[must_use]
+pub fn crown_seen_s(diameter_mm: f64, age_s: f64, exposure_s: f64) -> f64 {
+    let half = 0.5 * crown_life_s(diameter_mm);
+    let seen_since_impact = |time_s: f64| {
+        let time = clamped(time_s, 0.0, 1e6);
+        let fading = (time / half - 1.0).clamp(0.0, 1.0);
+        time.min(half) + half * fading * (1.0 - fading * fading * (1.0 - 0.5 * fading))
+    };
+    seen_since_impact(age_s) - seen_since_impact(age_s - clamped(exposure_s, 0.0, 1e6))
+}
+
 /// Height of the crown's rim `time_s` after the impact: a parabola over its life. Units: m.
 ///
 /// Its peak is D · min(2.5, 0.6 √(excess − 1)), excess as [`splash_excess`]; 0 below the threshold and outside its

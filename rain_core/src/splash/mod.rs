@@ -2,7 +2,8 @@
 //!
 //! [`splash_excess`] tells whether a drop splashes, [`Splash`] what comes of it, [`secondary_drop`] gives each thrown
 //! drop from a hash. [`ImpactFlux`] counts impacts and their momentum and energy on any slope in wind,
-//! [`for_each_impact`] places them in cells and time slots, the same at any frame rate.
+//! [`for_each_impact`] places them in cells and time slots, the same at any frame rate. [`SplashField`] is what is drawn:
+//! impacts by size class around any view, [`SplashShares`] how many of them.
 //!
 //! | file | concept |
 //! |---|---|
@@ -12,6 +13,9 @@
 //! | `secondary.rs` | drops thrown out |
 //! | `impacts.rs` | impacts per area and time |
 //! | `events.rs` | single impacts from hashes |
+//! | `field.rs` | what is drawn: impacts by class in cells and slots |
+//! | `budget.rs` | how many of each class |
+//! | `flight.rs` | the way of drops thrown out |
 //! | `artist.rs` | the sources' own tables of splash rates |
 //! | `foot.rs` | splashes of feet |
 //!
@@ -21,8 +25,11 @@
 //! does not splash again.
 
 mod artist;
+mod budget;
 mod crown;
 mod events;
+mod field;
+mod flight;
 mod foot;
 mod impacts;
 mod numbers;
@@ -30,8 +37,12 @@ mod secondary;
 mod threshold;
 
 pub use artist::{TrafficSplashes, artist_splashes_per_m2_s, splash_image_life_s};
-pub use crown::{crater_radius_m, crown_height_m, crown_life_s, crown_opacity, crown_radius_m, crown_radius_m_f32};
+pub use budget::{SplashExtent, SplashShares};
+pub use crown::{
+    crater_radius_m, crown_height_m, crown_life_s, crown_opacity, crown_radius_m, crown_radius_m_f32, crown_seen_s,
+};
 pub use events::{ImpactEvent, for_each_impact, hashed_poisson};
+pub use field::{SPLASH_CELL_M, SPLASH_COUNTS, SPLASH_SLOT_S, SPLASH_SLOTS, SplashAnchor, SplashField, SplashMark};
 pub use foot::foot_splash_strength;
 pub use impacts::{ImpactFlux, splashes_per_m2_s};
 pub use numbers::{ImpactNumbers, impact_energy_j, impact_momentum_kg_m_s, splash_k, splash_k_f32, water_drop_kg};

@@ -156,7 +156,7 @@ impl Plugin for RainfallPlugin {
 /// κ follows its target with this time constant, so that a change of rain does not jump. Units: s.
 const QUALITY_TIME_S: f64 = 1.0;
 
-fn fill_containers(
+pub(crate) fn fill_containers(
     time: Res<Time>,
     clock: Res<RainClock>,
     field: Res<RainfallField>,
@@ -308,7 +308,7 @@ impl RainViewFrame {
 }
 
 /// The view as the container needs it.
-fn view_volume(
+pub(crate) fn view_volume(
     clip_from_view: Mat4,
     size: UVec2,
     transform: &GlobalTransform,

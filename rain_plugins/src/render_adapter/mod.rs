@@ -5,12 +5,14 @@
 //! | `extract.rs` | main world → render world, plain data |
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
+//! | `splash.rs` | all three for splashes |
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
 mod prepare;
 mod record;
+mod splash;
 mod wave_levels;
 mod wet_material;
 
@@ -282,16 +284,24 @@ impl Plugin for RainRenderPlugin {
             .insert_resource(report)
             .insert_resource(levels)
             .init_gpu_resource::<prepare::RainGpu>()
+            .init_gpu_resource::<splash::SplashViews>()
             .init_resource::<extract::ExtractedWaves>()
             .init_resource::<extract::ExtractedMap>()
             .add_systems(
                 ExtractSchedule,
-                (extract::extract_rain, extract::extract_waves, extract::extract_map),
+                (
+                    extract::extract_rain,
+                    extract::extract_waves,
+                    extract::extract_map,
+                    splash::extract_splashes,
+                ),
             )
             .add_systems(
                 Render,
                 (
-                    prepare::prepare_rain.in_set(RenderSystems::PrepareBindGroups),
+                    (splash::prepare_splashes, prepare::prepare_rain)
+                        .chain()
+                        .in_set(RenderSystems::PrepareBindGroups),
                     wave_levels::show_levels.in_set(RenderSystems::Cleanup),
                 ),
             )
@@ -308,7 +318,8 @@ impl Plugin for RainRenderPlugin {
                     record::keep_reflection
                         .after(Core3dSystems::MainPass)
                         .before(Core3dSystems::EarlyPostProcess),
-                    record::rainfall
+                    (splash::splash, record::rainfall)
+                        .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),
                 ),

@@ -24,6 +24,7 @@ use rain_render::water_map::{WaterMapGpu, WaterMapInput, WaterMapPasses};
 use rain_render::waves::{WaveTileGpu, WavesGpu};
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
+use super::splash::SplashViews;
 use crate::report::RainReport;
 
 /// Everything on the GPU that lives with the device; rebuilt after a device loss.
@@ -205,6 +206,38 @@ fn prepare_map(
     tile.prepare(device, queue, &gpu.map_passes, &map.work.frame, &input);
 }
 
+/// Where the levels of standing water lie, relative to an eye.
+pub(super) fn level_params(surface: &ExtractedSurface, eye: DVec3) -> LevelMapParams {
+    surface
+        .levels
+        .as_ref()
+        .map_or_else(LevelMapParams::default, |l| LevelMapParams {
+            corner: (l.corner_m - eye.xz()).as_vec2().to_array(),
+            inverse_cell: (1.0 / l.cell_m) as f32,
+            base: (l.base_m - eye.y) as f32,
+            cells: l.cells.as_vec2().to_array(),
+            present: f32::from(u8::from(l.any_water())),
+            films: f32::from(u8::from(surface.films.texels.len() == l.levels_m().len())),
+        })
+}
+
+/// The light around a view with this exposure; `environment` is its map and the map's scale.
+pub(super) fn view_lighting(
+    scene: &ExtractedRainScene,
+    environment: Option<(&GpuImage, f32)>,
+    exposure: f32,
+) -> Lighting {
+    Lighting {
+        environment_scale: environment.map_or(0.0, |(_, scale)| scale * exposure),
+        environment_max_level: environment.map_or(0.0, |(image, _)| {
+            image.texture_descriptor.mip_level_count.saturating_sub(1) as f32
+        }),
+        ambient: scene.ambient * exposure,
+        sun_direction: scene.sun_direction,
+        sun: scene.sun * exposure,
+    }
+}
+
 /// What wet materials read, relative to an eye.
 fn surface_params(
     surface: Option<&ExtractedSurface>,
@@ -220,17 +253,7 @@ fn surface_params(
         };
     };
     let origin = eye.as_dvec3();
-    let levels = surface
-        .levels
-        .as_ref()
-        .map_or_else(LevelMapParams::default, |l| LevelMapParams {
-            corner: (l.corner_m - origin.xz()).as_vec2().to_array(),
-            inverse_cell: (1.0 / l.cell_m) as f32,
-            base: (l.base_m - origin.y) as f32,
-            cells: l.cells.as_vec2().to_array(),
-            present: f32::from(u8::from(l.any_water())),
-            films: f32::from(u8::from(surface.films.texels.len() == l.levels_m().len())),
-        });
+    let levels = level_params(surface, origin);
     let mirrors = surface.mirrors.views.map(|view| {
         view.map_or_else(ReflectionParams::default, |view| ReflectionParams {
             clip_from_eye: view.clip_from(eye).to_cols_array_2d(),
@@ -278,6 +301,7 @@ pub(super) fn prepare_rain(
     images: Res<RenderAssets<GpuImage>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
+    splashes: Res<SplashViews>,
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
@@ -381,15 +405,7 @@ pub(super) fn prepare_rain(
                 soft_m: if scene_depth.is_some() { shutter.soft_m } else { 0.0 },
                 ..shutter
             },
-            lighting: Lighting {
-                environment_scale: environment.as_ref().map_or(0.0, |(_, scale)| scale * camera.exposure),
-                environment_max_level: environment.as_ref().map_or(0.0, |(image, _)| {
-                    image.texture_descriptor.mip_level_count.saturating_sub(1) as f32
-                }),
-                ambient: scene.ambient * camera.exposure,
-                sun_direction: scene.sun_direction,
-                sun: scene.sun * camera.exposure,
-            },
+            lighting: view_lighting(&scene, environment, camera.exposure),
             cover: cover_at(eye.as_dvec3()),
         };
         let textures = RainfallTextures {
@@ -416,6 +432,7 @@ pub(super) fn prepare_rain(
                 .as_ref()
                 .map_or(0, |tile| tile.memory_bytes() as usize)
             + gpu.water_map.as_ref().map_or(0, |map| map.memory_bytes() as usize)
-            + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>(),
+            + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
+            + splashes.memory_bytes(),
     );
 }

@@ -136,7 +136,7 @@ pub(super) fn keep_reflection(
 }
 
 /// Draws into the part of the target that the view has; its pixels are counted from that part's corner.
-fn draw_within(pass: &mut wgpu::RenderPass, viewport: UVec4) {
+pub(super) fn draw_within(pass: &mut wgpu::RenderPass, viewport: UVec4) {
     let [x, y, width, height] = viewport.as_vec4().to_array();
     pass.set_viewport(x, y, width, height, 0.0, 1.0);
 }

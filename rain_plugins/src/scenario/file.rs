@@ -444,6 +444,9 @@ pub struct RainSettings {
     pub look: WetLook,
     /// Where rings on water come from. Default: `Drops`.
     pub rings: Rings,
+    /// Crowns and thrown drops of splashes drawn, about; twice as many is the hard bound, 0 draws none. Domain:
+    /// 0…1 000 000. Default: 8000.
+    pub splash_budget: u32,
 }
 
 /// Where rings on water come from.
@@ -466,6 +469,7 @@ impl Default for RainSettings {
             contrast: 4.0,
             exposure_s: 1.0 / 60.0,
             rings: Rings::default(),
+            splash_budget: 8_000,
             look: WetLook::Physical,
         }
     }

@@ -361,6 +361,12 @@ fn values_out_of_domain_name_the_field() {
             "rain.streak_budget",
             "4000000",
         ),
+        (
+            "streak_budget: 100000",
+            "splash_budget: 1000001",
+            "rain.splash_budget",
+            "1000000",
+        ),
         ("count: 4", "count: 10001", "captures", "at most 10000"),
         ("end_s: 600, count", "end_s: 601, count", "captures.end_s", "0 to 600"),
         ("(640, 360)", "(640, 0)", "outputs.size[1]", "1 to 8192"),

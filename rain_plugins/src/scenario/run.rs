@@ -383,6 +383,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
         .filter(|(name, _)| **name != PassName::Masks)
         .map(|(name, record)| {
             let spans: &[&str] = match name.as_str() {
+                "splash" => &["rain_splash_make", "rain_splash"],
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
                 "water_map" => &["rain_water_map"],
                 "ripples" => &["rain_ripples"],

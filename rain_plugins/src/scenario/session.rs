@@ -20,6 +20,7 @@ use super::stage::{self, Stage};
 use super::{headless, probe};
 use crate::RainPlugins;
 use crate::report::{RainReport, Report as PassReport};
+use crate::splash::SplashSettings;
 use crate::waves::{RingLayerSettings, RingSource, WaveWaterSettings};
 
 /// Time between the frames that warm a view up. Units: ns.
@@ -92,10 +93,15 @@ impl Session {
         app.insert_resource(scenario.rain.look);
         app.init_resource::<Pictured>().init_resource::<Returned>();
         if scenario.rain.enabled {
-            app.add_plugins(RainPlugins).insert_resource(WaveWaterSettings {
-                ring_source: ring_source(scenario.rain.rings),
-                ..default()
-            });
+            app.add_plugins(RainPlugins)
+                .insert_resource(WaveWaterSettings {
+                    ring_source: ring_source(scenario.rain.rings),
+                    ..default()
+                })
+                .insert_resource(SplashSettings {
+                    budget: Some(scenario.rain.splash_budget),
+                    ..default()
+                });
         }
         headless::finish(&mut app);
         stage::build(&mut app, scenario, assets)?;

@@ -10,6 +10,7 @@ use super::expectation::{At, Check, Expectation, MaskCheck, Statistic};
 use super::file::{Camera, Captures, Environment, Mask, Scenario, Sky, Vehicle};
 use super::report::PASS_NAMES;
 use super::weather::MAX_KEYS;
+use crate::splash::MAX_SPLASH_BUDGET;
 
 /// Longest run. Units: s (30 days).
 pub const MAX_DURATION_S: f64 = 2_592_000.0;
@@ -136,6 +137,13 @@ impl Scenario {
                 "rain.streak_budget",
                 self.rain.streak_budget,
                 format!("0 to {MAX_STREAK_BUDGET} quads"),
+            );
+        }
+        if self.rain.splash_budget > MAX_SPLASH_BUDGET {
+            return problem(
+                "rain.splash_budget",
+                self.rain.splash_budget,
+                format!("0 to {MAX_SPLASH_BUDGET} crowns and drops"),
             );
         }
         number("rain.contrast", self.rain.contrast, 1.0, 32.0, "")?;

@@ -12,6 +12,12 @@ fn rain_pcg3d(key: vec3<u32>) -> vec3<u32> {
     return v;
 }
 
+fn rain_pcg(key: u32) -> u32 {
+    let s = key * 747796405u + 2891336453u;
+    let w = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
+    return (w >> 22u) ^ w;
+}
+
 fn rain_unit(h: u32) -> f32 {
     return f32(h >> 8u) * (1.0 / 16777216.0);
 }

@@ -7,18 +7,16 @@
 @group(0) @binding(4) var environment: texture_cube<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
 
-fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
-    // Cube maps are left-handed.
-    let d = vec3<f32>(direction.x, direction.y, -direction.z);
-    let level = blur * view.environment.w;
-    return textureSampleLevel(environment, environment_sampler, d, level).rgb * view.environment.rgb + view.ambient.rgb;
-}
-
 fn drop_radiance(from_eye: vec3<f32>) -> vec3<f32> {
-    let refracted = surroundings(from_eye, 0.55);
-    let reflected = surroundings(vec3<f32>(-from_eye.x, max(0.2, -from_eye.y), -from_eye.z), 0.9);
-    let theta = acos(clamp(dot(from_eye, view.sun_direction.xyz), -1.0, 1.0));
-    return rain_drop_radiance(refracted, reflected, view.sun.rgb, theta);
+    return rain_drop_shine(
+        environment,
+        environment_sampler,
+        view.environment,
+        view.ambient,
+        view.sun_direction.xyz,
+        view.sun.rgb,
+        from_eye,
+    );
 }
 
 fn to_pixels(clip: vec4<f32>) -> vec2<f32> {

@@ -1,5 +1,6 @@
 //! Splash thresholds and crowns.
 
+mod field;
 mod formulas;
 mod thrown;
 

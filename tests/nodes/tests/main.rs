@@ -15,6 +15,7 @@ mod reflection;
 mod ring_layers;
 mod shader_functions;
 mod slope_mips;
+mod splash;
 mod streak_textures;
 mod water;
 mod water_map;

@@ -21,6 +21,7 @@ mod rewind;
 mod rings;
 mod scenes;
 mod skipping;
+mod splashes;
 mod tiles;
 mod two_views;
 mod views;

@@ -1,0 +1,225 @@
+//! Splashes: extraction, uploads and commands of each view.
+
+use std::collections::HashMap;
+
+use bevy::core_pipeline::prepass::ViewPrepassTextures;
+use bevy::math::Vec2;
+use bevy::prelude::*;
+use bevy::render::Extract;
+use bevy::render::camera::ExtractedCamera;
+use bevy::render::diagnostic::RecordDiagnostics;
+use bevy::render::render_asset::RenderAssets;
+use bevy::render::render_resource::StoreOp;
+use bevy::render::renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery};
+use bevy::render::sync_world::RenderEntity;
+use bevy::render::texture::GpuImage;
+use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
+use rain_render::cover::open_sky;
+use rain_render::gpu_types::LevelMapParams;
+use rain_render::splash::{
+    SplashGpu, SplashInput, SplashTextures, SplashViewGpu, encode_splash_coverage, encode_splash_draw,
+    encode_splash_make,
+};
+
+use super::extract::{ExtractedRainScene, ExtractedRainView};
+use super::prepare::{level_params, view_lighting};
+use super::record::draw_within;
+use crate::report::{PassName, RainReport};
+use crate::splash::{SplashMask, SplashShot, SplashViewFrame};
+
+/// One camera that sees splashes.
+#[derive(Component, Clone)]
+pub(super) struct ExtractedSplashView {
+    shot: Option<SplashShot>,
+    mask: Option<Handle<Image>>,
+}
+
+/// Everything of splashes on the GPU that lives with the device.
+#[derive(Resource)]
+pub(super) struct SplashViews {
+    gpu: SplashGpu,
+    views: HashMap<Entity, SplashViewGpu>,
+}
+
+impl FromWorld for SplashViews {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            gpu: SplashGpu::new(world.resource::<RenderDevice>().wgpu_device()),
+            views: HashMap::new(),
+        }
+    }
+}
+
+impl SplashViews {
+    /// GPU memory of all views. Units: bytes.
+    pub(super) fn memory_bytes(&self) -> usize {
+        self.views.values().map(SplashViewGpu::memory_bytes).sum()
+    }
+}
+
+pub(super) fn extract_splashes(
+    mut commands: Commands,
+    views: Extract<Query<(RenderEntity, &SplashViewFrame, &Camera, Option<&SplashMask>)>>,
+) {
+    for (entity, frame, camera, mask) in &views {
+        let mut entity = commands.entity(entity);
+        if !camera.is_active {
+            entity.remove::<ExtractedSplashView>();
+            continue;
+        }
+        entity.insert(ExtractedSplashView {
+            shot: frame.shot.clone(),
+            mask: mask.map(|mask| mask.0.clone()),
+        });
+    }
+}
+
+pub(super) fn prepare_splashes(
+    mut splashes: ResMut<SplashViews>,
+    scene: Option<Res<ExtractedRainScene>>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+    images: Res<RenderAssets<GpuImage>>,
+    views: Query<(
+        Entity,
+        &ExtractedView,
+        &ExtractedCamera,
+        &ExtractedSplashView,
+        &ExtractedRainView,
+        Option<&ViewPrepassTextures>,
+        &Msaa,
+    )>,
+) {
+    let Some(scene) = scene else { return };
+    let splashes = &mut *splashes;
+    let device = device.wgpu_device();
+    let cover = scene.cover.as_ref();
+    let cover_image = cover.and_then(|c| images.get(c.image));
+    // What is not shown is not kept up to date.
+    let surface = scene.surface.as_ref();
+    let water = surface.filter(|s| s.shown && s.levels.is_some());
+    let level_image = water.and_then(|s| images.get(s.images?.levels));
+    splashes.views.retain(|entity, _| views.contains(*entity));
+    for (entity, view, camera, splash, rain, prepass, msaa) in &views {
+        let Some(shot) = &splash.shot else { continue };
+        let eye = view.world_from_view.translation().as_dvec3();
+        let rotation = view.world_from_view.rotation();
+        let (now, before) = shot.motion.view_matrices(rotation, shot.exposure_s);
+        let scene_depth: Option<&wgpu::TextureView> = match (msaa, prepass.and_then(ViewPrepassTextures::depth_view)) {
+            (Msaa::Off, Some(depth)) => Some(depth),
+            _ => None,
+        };
+        let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
+        splashes
+            .gpu
+            .prepare_pipelines(device, view.target_format, msaa.samples(), splash.mask.is_some());
+        let input = SplashInput {
+            field: &shot.field,
+            anchor: shot.anchor,
+            clip_from_eye: view.clip_from_view * now,
+            clip_from_eye_before: view.clip_from_view * before,
+            side_planes: shot.side_planes,
+            wind_m_s: shot.wind_m_s,
+            viewport_px: Vec2::new(view.viewport.z as f32, view.viewport.w as f32),
+            focal_px: shot.focal_px,
+            near_m: view.clip_from_view.w_axis.z,
+            exposure_s: shot.exposure_s,
+            contrast: shot.contrast,
+            soft_m: if scene_depth.is_some() { shot.soft_m } else { 0.0 },
+            reach_m: shot.reach_m,
+            near_reach_m: shot.near_reach_m,
+            film_mm: surface.map_or(0.0, |s| s.state.y),
+            capacity: shot.capacity,
+            lighting: view_lighting(&scene, environment, camera.exposure),
+            cover: match (cover.and_then(|c| c.placement), cover_image) {
+                (Some(placement), Some(_)) => placement.params(eye),
+                _ => open_sky(),
+            },
+            levels: match (water, level_image) {
+                (Some(water), Some(_)) => level_params(water, eye),
+                _ => LevelMapParams::default(),
+            },
+        };
+        let textures = SplashTextures {
+            cover: cover_image.map(|i| -> &wgpu::TextureView { &i.texture_view }),
+            scene_depth,
+            environment: environment.map(|(i, _)| -> &wgpu::TextureView { &i.texture_view }),
+            levels: level_image.map(|i| -> &wgpu::TextureView { &i.texture_view }),
+        };
+        let slot = splashes
+            .views
+            .entry(entity)
+            .or_insert_with(|| SplashViewGpu::new(device));
+        slot.prepare(device, &queue, &splashes.gpu, &input, textures);
+    }
+}
+
+/// Makes and draws a view's splashes over its colour target, and their mask where somebody asked for it.
+pub(super) fn splash(
+    view: ViewQuery<(
+        Entity,
+        &ExtractedView,
+        &ExtractedSplashView,
+        &ViewTarget,
+        &ViewDepthTexture,
+        &Msaa,
+    )>,
+    splashes: Res<SplashViews>,
+    images: Res<RenderAssets<GpuImage>>,
+    report: Res<RainReport>,
+    mut ctx: RenderContext,
+) {
+    let (entity, view, splash, target, depth, msaa) = view.into_inner();
+    let view_gpu = splashes.views.get(&entity).filter(|_| splash.shot.is_some());
+    let recorder = ctx.diagnostic_recorder();
+    let recorder = recorder.as_deref();
+    if let Some(view_gpu) = view_gpu {
+        let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("rain_splash_make"),
+            timestamp_writes: None,
+        });
+        let span = recorder.pass_span(&mut pass, "rain_splash_make");
+        encode_splash_make(&mut pass, &splashes.gpu, view_gpu);
+        span.end(&mut pass);
+        drop(pass);
+
+        let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("rain_splash"),
+            color_attachments: &[Some(target.get_color_attachment())],
+            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let span = recorder.pass_span(&mut pass, "rain_splash");
+        draw_within(&mut pass, view.viewport);
+        encode_splash_draw(&mut pass, &splashes.gpu, view_gpu, view.target_format, msaa.samples());
+        span.end(&mut pass);
+        drop(pass);
+        report.recorded(PassName::Splash);
+    }
+    let mask = splash.mask.as_ref().and_then(|mask| images.get(mask));
+    let Some(mask) = mask.filter(|_| *msaa == Msaa::Off) else {
+        return;
+    };
+    let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("rain_mask_splash"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &mask.texture_view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    if let Some(view_gpu) = view_gpu {
+        draw_within(&mut pass, view.viewport);
+        encode_splash_coverage(&mut pass, &splashes.gpu, view_gpu, msaa.samples());
+    }
+}

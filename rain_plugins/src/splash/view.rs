@@ -1,0 +1,259 @@
+//! What a marked camera draws of splashes this frame.
+
+use std::sync::Arc;
+
+use bevy::math::Vec4;
+use bevy::prelude::*;
+use rain_core::error::{ConfigError, in_range};
+use rain_core::rainfall::Spectrum;
+use rain_core::splash::{SplashAnchor, SplashExtent, SplashField, SplashShares};
+use rain_ecs::prelude::*;
+
+use crate::cover::{AirAroundView, CoverMap};
+use crate::rainfall::{RainView, SoftwareAdapter, ViewMotion, fill_containers, view_volume};
+use crate::report::{PassName, RainReport, SkipReason};
+use crate::schedule::RainViewSystems;
+use crate::surface::SurfaceState;
+
+/// Largest accepted number of crowns and drops in a view.
+pub const MAX_SPLASH_BUDGET: u32 = 1_000_000;
+
+/// Furthest accepted reach of splashes. Units: m.
+pub const MAX_SPLASH_DISTANCE_M: f32 = 50.0;
+
+/// Tables are made anew when the film has grown or shrunk by this. Units: mm.
+const FILM_STEP_MM: f64 = 0.02;
+
+/// How splashes of rain are drawn, in every view. Contrast, shutter and soft fade are those of each view's [`RainView`].
+#[derive(Resource, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Resource, Default)]
+pub struct SplashSettings {
+    /// Draws splashes. Views whose [`RainView`] is off or has a streak budget of 0 draw none in any case.
+    pub enabled: bool,
+    /// How many crowns and thrown drops a view draws, about; twice as many is the hard bound. `None`: 4,000 on a software
+    /// adapter, 40,000 on a GPU. Domain: [0, 10⁶]. The number is spent on the largest splashes; those that are drawn
+    /// show the light of those that are not.
+    pub budget: Option<u32>,
+    /// Crowns are drawn to here, fading over the last third. Units: m. Domain: [0, 50]. Default: 14.
+    pub distance_m: f32,
+    /// Thrown drops are drawn to here; further away they are less than a step of contrast. Units: m. Domain: [0, 50].
+    /// Default: 3.5.
+    pub drops_distance_m: f32,
+}
+
+impl Default for SplashSettings {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            budget: None,
+            distance_m: 14.0,
+            drops_distance_m: 3.5,
+        }
+    }
+}
+
+impl SplashSettings {
+    /// These settings, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        let furthest = f64::from(MAX_SPLASH_DISTANCE_M);
+        in_range("distance_m", self.distance_m.into(), 0.0, furthest, "0 to 50 m")?;
+        in_range(
+            "drops_distance_m",
+            self.drops_distance_m.into(),
+            0.0,
+            furthest,
+            "0 to 50 m",
+        )?;
+        let budget = f64::from(self.budget.unwrap_or_default());
+        in_range("budget", budget, 0.0, f64::from(MAX_SPLASH_BUDGET), "0 to 1000000")?;
+        Ok(self)
+    }
+}
+
+/// An image that receives how much of each pixel splashes cover (R16Float, made with
+/// [`mask_image`](crate::render_adapter::mask_image)). Put it on a camera with [`RainView`] and `Msaa::Off`. The mask of
+/// streaks, `RainMasks::rain`, holds no splashes: it measures the optical depth of the rain in the air.
+#[derive(Component, Clone, Debug)]
+pub struct SplashMask(pub Handle<Image>);
+
+/// A view's splashes at a moment.
+#[derive(Clone, Debug)]
+pub(crate) struct SplashShot {
+    pub field: Arc<SplashField>,
+    pub anchor: SplashAnchor,
+    pub side_planes: [Vec4; 4],
+    pub wind_m_s: Vec3,
+    pub focal_px: f32,
+    pub exposure_s: f32,
+    pub contrast: f32,
+    pub soft_m: f32,
+    pub reach_m: f32,
+    pub near_reach_m: f32,
+    pub capacity: u32,
+    pub motion: ViewMotion,
+}
+
+/// What tables of splashes are made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Source {
+    seed: u64,
+    spectrum: Spectrum,
+    extent: SplashExtent,
+    budget: u32,
+}
+
+/// What a view draws of splashes this frame; extracted to the render world.
+#[derive(Component, Clone, Debug, Default)]
+pub struct SplashViewFrame {
+    /// `None`: nothing.
+    pub(crate) shot: Option<SplashShot>,
+    /// Kept as long as they hold.
+    tables: Option<(Source, Arc<SplashField>)>,
+}
+
+impl SplashViewFrame {
+    /// Whether this frame draws splashes.
+    #[must_use]
+    pub fn draws(&self) -> bool {
+        self.shot.is_some()
+    }
+
+    /// Tables of the rain.
+    fn field(&mut self, source: &Source) -> Arc<SplashField> {
+        match &self.tables {
+            Some((known, field)) if known == source => field.clone(),
+            _ => {
+                let shares = SplashShares::for_budget(&source.spectrum, &source.extent, f64::from(source.budget));
+                let field = Arc::new(SplashField::new(source.seed, &source.spectrum, &shares));
+                self.tables = Some((*source, field.clone()));
+                field
+            }
+        }
+    }
+}
+
+/// Splashes of rain in all [`RainView`]s.
+pub struct SplashPlugin;
+
+impl Plugin for SplashPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<SplashSettings>()
+            .init_resource::<SplashSettings>()
+            .init_resource::<SoftwareAdapter>()
+            .init_resource::<AirAroundView>()
+            .add_systems(
+                PostUpdate,
+                aim_splashes.in_set(RainViewSystems::Views).after(fill_containers),
+            );
+        app.register_required_components::<RainView, SplashViewFrame>();
+    }
+}
+
+/// The last good settings; what is wrong is named in the log once.
+fn good_settings(settings: &Res<SplashSettings>, kept: &mut Option<SplashSettings>) -> SplashSettings {
+    if kept.is_none() || settings.is_changed() {
+        match settings.validated() {
+            Ok(good) => *kept = Some(good),
+            Err(error) => error!("splashes: {error}"),
+        }
+    }
+    kept.unwrap_or_default()
+}
+
+fn aim_splashes(
+    clock: Res<RainClock>,
+    field: Res<RainfallField>,
+    seed: Res<RainSeed>,
+    settings: Res<SplashSettings>,
+    mut kept: Local<Option<SplashSettings>>,
+    software: Res<SoftwareAdapter>,
+    report: Res<RainReport>,
+    air: Res<AirAroundView>,
+    cover: Option<Res<CoverMap>>,
+    surface: Option<Res<SurfaceState>>,
+    mut views: Query<(
+        Entity,
+        &RainView,
+        &Camera,
+        &Projection,
+        &GlobalTransform,
+        &ViewMotion,
+        &mut SplashViewFrame,
+    )>,
+) {
+    let settings = good_settings(&settings, &mut kept);
+    let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
+    let now = clock.now_s() + since_tick;
+    // In steps, so that tables last while the film grows; downwards, so that nothing that splashes is left out.
+    let film_mm = surface.map_or(0.0, |s| (f64::from(s.state.y) / FILM_STEP_MM).floor() * FILM_STEP_MM);
+    let mut any = false;
+    for (entity, view, camera, projection, transform, motion, mut frame) in &mut views {
+        any = true;
+        frame.shot = None;
+        // A bad `RainView` has been named; the defaults stand in for it.
+        let view = view.validated().unwrap_or_default();
+        let size = camera.physical_viewport_size().unwrap_or_default();
+        let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
+            Some(SkipReason::NoView)
+        } else if !view.enabled
+            || view.streak_budget == Some(0)
+            || !settings.enabled
+            || settings.budget == Some(0)
+            || settings.distance_m <= 0.0
+        {
+            Some(SkipReason::Disabled)
+        } else if !field.is_raining() {
+            Some(SkipReason::NoRain)
+        } else if !matches!(projection, Projection::Perspective(_)) {
+            Some(SkipReason::Unsupported)
+        } else if air.closed_in == Some(entity) {
+            Some(SkipReason::Indoors)
+        } else if cover.as_ref().is_none_or(|cover| cover.placement.is_none()) {
+            Some(SkipReason::NoGround)
+        } else {
+            None
+        };
+        if let Some(reason) = skip {
+            report.skipped(PassName::Splash, reason);
+            continue;
+        }
+        let clip_from_view = projection.get_clip_from_view();
+        let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
+        let budget = settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 });
+        let near_m = settings.drops_distance_m.min(settings.distance_m);
+        let source = Source {
+            seed: seed.0,
+            spectrum: *field.spectrum(),
+            extent: SplashExtent {
+                reach_m: settings.distance_m.into(),
+                near_m: near_m.into(),
+                angle_rad: 2.0 * libm::atan(1.0 / f64::from(clip_from_view.x_axis.x).abs().max(1e-3)),
+                exposure_s: view.exposure_s.into(),
+                film_mm,
+            },
+            budget,
+        };
+        let tables = frame.field(&source);
+        frame.shot = Some(SplashShot {
+            field: tables,
+            anchor: SplashAnchor::new(volume.eye_m, now),
+            side_planes: volume.side_planes,
+            wind_m_s: field.wind_m_s().as_vec3(),
+            focal_px: volume.focal_px as f32,
+            exposure_s: view.exposure_s,
+            contrast: view.contrast,
+            soft_m: view.soft_m,
+            reach_m: settings.distance_m,
+            near_reach_m: near_m,
+            // The budget is a mean.
+            capacity: 2 * budget + 1024,
+            motion: *motion,
+        });
+    }
+    if !any {
+        report.skipped(PassName::Splash, SkipReason::NoView);
+    }
+}

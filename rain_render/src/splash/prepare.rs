@@ -1,0 +1,330 @@
+//! Pipelines that live with the device, buffers that live with a view.
+
+use std::collections::HashMap;
+
+use crate::bindings::{compute_pipeline, one_texel, storage_entry, texture_entry, uniform_entry};
+use crate::compose;
+use crate::gpu_types::{SplashDraw, SplashFind, SplashPart, SplashView};
+use crate::rainfall::{COVERAGE_FORMAT, DEPTH_FORMAT};
+
+use super::SplashInput;
+
+/// What draw pipelines differ by.
+type DrawKey = (wgpu::TextureFormat, u32, bool);
+
+/// Everything of the pass that lives as long as the device.
+#[derive(Debug)]
+pub struct SplashGpu {
+    make_layout: wgpu::BindGroupLayout,
+    pub(super) find: wgpu::ComputePipeline,
+    pub(super) add: wgpu::ComputePipeline,
+    pub(super) sort: wgpu::ComputePipeline,
+    draw_layout: wgpu::BindGroupLayout,
+    draw_pipeline_layout: wgpu::PipelineLayout,
+    draw_shader: wgpu::ShaderModule,
+    pub(super) draw: HashMap<DrawKey, wgpu::RenderPipeline>,
+    no_depth: wgpu::TextureView,
+    no_environment: wgpu::TextureView,
+    no_levels: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+}
+
+/// Textures of the host that a view reads. `None`: no ground (and so no splash), no soft fade, no environment, no
+/// standing water.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct SplashTextures<'a> {
+    /// Depth map along the rain.
+    pub cover: Option<&'a wgpu::TextureView>,
+    /// Single-sampled depth of the scene, for the soft fade.
+    pub scene_depth: Option<&'a wgpu::TextureView>,
+    /// Prefiltered cube map.
+    pub environment: Option<&'a wgpu::TextureView>,
+    /// Levels of standing water.
+    pub levels: Option<&'a wgpu::TextureView>,
+}
+
+/// Buffers and bind groups of one view; grown, never shrunk.
+#[derive(Debug)]
+pub struct SplashViewGpu {
+    uniform: wgpu::Buffer,
+    places: wgpu::Buffer,
+    finds: wgpu::Buffer,
+    parts: wgpu::Buffer,
+    pub(super) arguments: wgpu::Buffer,
+    cells: u32,
+    capacity: u32,
+    pub(super) invocations: u32,
+    pub(super) room: u32,
+    pub(super) make: Option<wgpu::BindGroup>,
+    pub(super) draw: Option<wgpu::BindGroup>,
+}
+
+impl SplashGpu {
+    /// Builds the layouts and the pipelines that make splashes.
+    #[must_use]
+    pub fn new(device: &wgpu::Device) -> Self {
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let depth = wgpu::TextureSampleType::Depth;
+        let make_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("rain splash make"),
+            entries: &[
+                uniform_entry(0, compute, size_of::<SplashView>()),
+                storage_entry(1, compute, false),
+                storage_entry(2, compute, false),
+                storage_entry(3, compute, false),
+                texture_entry(4, compute, depth, wgpu::TextureViewDimension::D2),
+                texture_entry(
+                    5,
+                    compute,
+                    wgpu::TextureSampleType::Float { filterable: true },
+                    wgpu::TextureViewDimension::Cube,
+                ),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 6,
+                    visibility: compute,
+                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                    count: None,
+                },
+                texture_entry(
+                    7,
+                    compute,
+                    wgpu::TextureSampleType::Float { filterable: false },
+                    wgpu::TextureViewDimension::D2,
+                ),
+                storage_entry(8, compute, false),
+            ],
+        });
+        let module = compose::shader(device, "splash_make");
+        let pipeline = |entry: &str| compute_pipeline(device, "rain splash make", &module, entry, &[&make_layout]);
+        let (find, add, sort) = (pipeline("find"), pipeline("add"), pipeline("sort"));
+        let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("rain splash draw"),
+            entries: &[
+                uniform_entry(0, raster, size_of::<SplashView>()),
+                storage_entry(1, wgpu::ShaderStages::VERTEX, true),
+                texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
+            ],
+        });
+        let draw_pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("rain splash draw"),
+            bind_group_layouts: &[Some(&draw_layout)],
+            immediate_size: 0,
+        });
+        Self {
+            make_layout,
+            find,
+            add,
+            sort,
+            draw_layout,
+            draw_pipeline_layout,
+            draw_shader: compose::shader(device, "splash_draw"),
+            draw: HashMap::new(),
+            no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
+            no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
+            no_levels: one_texel(device, "rain no levels", wgpu::TextureFormat::R32Float, 1),
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("rain environment"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            }),
+        }
+    }
+
+    /// Makes sure that the draw pipeline for a target exists; `coverage` asks for the mask's as well.
+    pub fn prepare_pipelines(
+        &mut self,
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        samples: u32,
+        coverage: bool,
+    ) {
+        let mut keys = vec![(format, samples, false)];
+        if coverage {
+            keys.push((COVERAGE_FORMAT, samples, true));
+        }
+        for key in keys {
+            if !self.draw.contains_key(&key) {
+                let pipeline = self.draw_pipeline(device, key);
+                self.draw.insert(key, pipeline);
+            }
+        }
+    }
+
+    fn draw_pipeline(&self, device: &wgpu::Device, (format, samples, coverage): DrawKey) -> wgpu::RenderPipeline {
+        let over = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+            operation: wgpu::BlendOperation::Add,
+        };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("rain splash draw"),
+            layout: Some(&self.draw_pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &self.draw_shader,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: samples,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &self.draw_shader,
+                entry_point: Some(if coverage { "coverage" } else { "colour" }),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend: Some(wgpu::BlendState {
+                        color: over,
+                        // The target's own alpha stays what the scene made it.
+                        alpha: wgpu::BlendComponent {
+                            src_factor: wgpu::BlendFactor::Zero,
+                            dst_factor: wgpu::BlendFactor::One,
+                            operation: wgpu::BlendOperation::Add,
+                        },
+                    }),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+impl SplashViewGpu {
+    /// Buffers for a view, empty.
+    #[must_use]
+    pub fn new(device: &wgpu::Device) -> Self {
+        let storage = wgpu::BufferUsages::STORAGE;
+        Self {
+            uniform: buffer(
+                device,
+                "rain splash view",
+                size_of::<SplashView>(),
+                wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            ),
+            places: buffer(device, "rain splash places", 4, storage),
+            finds: buffer(device, "rain splash finds", size_of::<SplashFind>(), storage),
+            parts: buffer(device, "rain splash parts", size_of::<SplashPart>(), storage),
+            arguments: buffer(
+                device,
+                "rain splash draw",
+                size_of::<SplashDraw>(),
+                storage | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC,
+            ),
+            cells: 1,
+            capacity: 1,
+            invocations: 0,
+            room: 0,
+            make: None,
+            draw: None,
+        }
+    }
+
+    /// Uploads a view's inputs and binds its textures. Call once a frame, before encoding.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        gpu: &SplashGpu,
+        input: &SplashInput,
+        textures: SplashTextures,
+    ) {
+        let storage = wgpu::BufferUsages::STORAGE;
+        (self.invocations, self.room) = (input.invocations(), input.capacity);
+        if self.invocations > self.cells {
+            self.cells = self.invocations;
+            self.places = buffer(device, "rain splash places", self.cells as usize * 4, storage);
+        }
+        if input.capacity > self.capacity {
+            self.capacity = input.capacity;
+            self.finds = buffer(
+                device,
+                "rain splash finds",
+                self.capacity as usize * size_of::<SplashFind>(),
+                storage,
+            );
+            self.parts = buffer(
+                device,
+                "rain splash parts",
+                self.capacity as usize * size_of::<SplashPart>(),
+                storage | wgpu::BufferUsages::COPY_SRC,
+            );
+        }
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform()));
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let view =
+            |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();
+        let cover = view(textures.cover, &gpu.no_depth);
+        let scene = view(textures.scene_depth, &gpu.no_depth);
+        let environment = view(textures.environment, &gpu.no_environment);
+        let levels = view(textures.levels, &gpu.no_levels);
+        self.make = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain splash make"),
+            layout: &gpu.make_layout,
+            entries: &[
+                entry(0, self.uniform.as_entire_binding()),
+                entry(1, self.places.as_entire_binding()),
+                entry(2, self.parts.as_entire_binding()),
+                entry(3, self.arguments.as_entire_binding()),
+                entry(4, wgpu::BindingResource::TextureView(&cover)),
+                entry(5, wgpu::BindingResource::TextureView(&environment)),
+                entry(6, wgpu::BindingResource::Sampler(&gpu.sampler)),
+                entry(7, wgpu::BindingResource::TextureView(&levels)),
+                entry(8, self.finds.as_entire_binding()),
+            ],
+        }));
+        self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain splash draw"),
+            layout: &gpu.draw_layout,
+            entries: &[
+                entry(0, self.uniform.as_entire_binding()),
+                entry(1, self.parts.as_entire_binding()),
+                entry(2, wgpu::BindingResource::TextureView(&scene)),
+            ],
+        }));
+    }
+
+    /// GPU memory of this view. Units: bytes.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<SplashView>()
+            + size_of::<SplashDraw>()
+            + self.cells as usize * 4
+            + self.capacity as usize * (size_of::<SplashFind>() + size_of::<SplashPart>())
+    }
+
+    /// The crowns and drops that were made, for reading back.
+    #[must_use]
+    pub fn parts(&self) -> &wgpu::Buffer {
+        &self.parts
+    }
+
+    /// The draw's arguments and how many parts there were ([`SplashDraw`]), for reading back.
+    #[must_use]
+    pub fn arguments(&self) -> &wgpu::Buffer {
+        &self.arguments
+    }
+}
+
+fn buffer(device: &wgpu::Device, label: &str, bytes: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes as u64,
+        usage,
+        mapped_at_creation: false,
+    })
+}

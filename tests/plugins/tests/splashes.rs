@@ -1,0 +1,174 @@
+//! Splashes in a Bevy app: where they show, when they are skipped, and what they leave alone.
+
+use bevy::prelude::*;
+use image::RgbImage;
+use rain_plugins::prelude::*;
+use rain_plugins::waves::PuddleWaves;
+use test_support::app::{FRAME, TestApp};
+use test_support::{gpu, world};
+
+use crate::puddles::hollow;
+
+const SIZE: [u32; 2] = [160, 90];
+
+/// Ground and roof in a rain; nearly no streaks, so that what differs is splashes.
+fn scene(intensity_mm_h: f64, splashes: bool) -> TestApp {
+    let mut test = TestApp::new(SIZE, true);
+    world::ground(test.world());
+    world::roof(test.world());
+    test.world().spawn(Weather::rain(intensity_mm_h));
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(RainView {
+        streak_budget: Some(1),
+        contrast: 8.0,
+        ..default()
+    });
+    test.world().resource_mut::<SplashSettings>().enabled = splashes;
+    test
+}
+
+/// Pixels in which two pictures differ.
+fn different(a: &RgbImage, b: &RgbImage) -> usize {
+    let off = |(a, b): &(&image::Rgb<u8>, &image::Rgb<u8>)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2);
+    a.pixels().zip(b.pixels()).filter(off).count()
+}
+
+/// Pixels that splashes change in three moments of a view.
+fn shown(intensity_mm_h: f64, eye: Vec3, target: Vec3) -> usize {
+    let [mut with, mut without] = [true, false].map(|splashes| scene(intensity_mm_h, splashes));
+    let mut sum = 0;
+    for test in [&mut with, &mut without] {
+        test.look(eye, target);
+        test.frames(12, FRAME);
+    }
+    for _ in 0..3 {
+        sum += different(&with.picture(), &without.picture());
+        with.frames(7, FRAME);
+        without.frames(7, FRAME);
+    }
+    sum
+}
+
+#[test]
+fn splashes_show_on_open_ground_and_on_roofs_and_not_under_them() {
+    if !gpu::available() {
+        return;
+    }
+    let open = shown(50.0, Vec3::new(0.0, 0.6, 12.0), Vec3::new(0.0, 0.0, 10.5));
+    assert!(open > 100, "{open} on open ground");
+    let roof = shown(50.0, Vec3::new(0.0, 5.0, 1.5), Vec3::new(0.0, 4.1, 0.0));
+    assert!(roof > 100, "{roof} on the roof");
+    let under = shown(50.0, Vec3::new(0.0, 0.6, 1.5), Vec3::new(0.0, 0.0, 0.0));
+    assert_eq!(under, 0, "under the roof");
+    let drizzle = shown(0.5, Vec3::new(0.0, 0.6, 12.0), Vec3::new(0.0, 0.0, 10.5));
+    assert!(10 * drizzle < open, "{drizzle} in drizzle, {open} in a downpour");
+}
+
+#[test]
+fn splashes_are_skipped_with_a_reason_and_recorded_otherwise() {
+    if !gpu::available() {
+        return;
+    }
+    let eye = (Vec3::new(0.0, 1.0, 12.0), Vec3::new(0.0, 0.0, 8.0));
+    let mut test = scene(50.0, true);
+    test.look(eye.0, eye.1);
+    test.frames(20, FRAME);
+    test.reset();
+    test.frames(10, FRAME);
+    assert_eq!(test.recorded(PassName::Splash), 10);
+    let memory = test.app.world().resource::<RainReport>().snapshot().gpu_memory_bytes;
+
+    let settings = |test: &mut TestApp, edit: &dyn Fn(&mut SplashSettings)| {
+        edit(&mut test.world().resource_mut::<SplashSettings>());
+        test.frames(2, FRAME);
+        test.reset();
+        test.frames(5, FRAME);
+    };
+    settings(&mut test, &|s| s.budget = Some(0));
+    assert_eq!(test.skipped(PassName::Splash, SkipReason::Disabled), 5, "no budget");
+    settings(&mut test, &|s| s.budget = None);
+    assert_eq!(test.recorded(PassName::Splash), 5);
+    // A bad value leaves the last good ones in force.
+    settings(&mut test, &|s| s.distance_m = f32::NAN);
+    assert_eq!(test.recorded(PassName::Splash), 5);
+    settings(&mut test, &|s| {
+        *s = SplashSettings {
+            enabled: false,
+            ..default()
+        }
+    });
+    assert_eq!(test.skipped(PassName::Splash, SkipReason::Disabled), 5, "off");
+    assert!(memory > 1_000_000 && memory < 64 << 20, "{memory}");
+
+    let mut dry = scene(0.0, true);
+    dry.frames(10, FRAME);
+    assert_eq!(
+        (
+            dry.recorded(PassName::Splash),
+            dry.skipped(PassName::Splash, SkipReason::NoRain)
+        ),
+        (0, 10)
+    );
+
+    let mut empty = TestApp::new(SIZE, true);
+    empty.world().spawn(Weather::rain(50.0));
+    let camera = empty.camera;
+    empty.world().entity_mut(camera).remove::<RainView>();
+    empty.frames(4, FRAME);
+    assert_eq!(empty.skipped(PassName::Splash, SkipReason::NoView), 4);
+}
+
+#[test]
+fn an_eye_in_a_closed_room_records_no_splash() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = TestApp::new(SIZE, true);
+    world::ground(test.world());
+    world::room(test.world());
+    test.world().spawn(Weather::rain(50.0));
+    test.look(Vec3::new(0.0, 1.5, 1.5), Vec3::new(0.0, 1.5, -3.0));
+    test.frames(10, FRAME);
+    test.reset();
+    test.frames(10, FRAME);
+    assert_eq!(test.recorded(PassName::Splash), 0);
+    assert_eq!(test.skipped(PassName::Splash, SkipReason::Indoors), 10);
+}
+
+#[test]
+fn splashes_leave_the_water_of_a_puddle_still() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, weather) = hollow();
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(RainView::default());
+    test.world().entity_mut(weather).insert(Weather::rain(60.0));
+    test.leap(1200);
+    test.frames(30, FRAME);
+    assert!(
+        test.app.world().resource::<PuddleWaves>().tile().has_water(),
+        "a puddle is in sight"
+    );
+    test.reset();
+    test.frames(30, FRAME);
+    assert_eq!(test.recorded(PassName::Splash), 30);
+    assert_eq!(test.recorded(PassName::Waves), 0);
+    assert_eq!(test.skipped(PassName::Waves, SkipReason::Calm), 30);
+    // What does disturb it is seen.
+    test.world()
+        .spawn((WaterDisturber::default(), Transform::from_xyz(0.0, 0.0, 0.0)));
+    test.reset();
+    for i in 0..30_u8 {
+        let world = test.world();
+        let mover = world
+            .query_filtered::<Entity, With<WaterDisturber>>()
+            .single(world)
+            .expect("the one");
+        world
+            .entity_mut(mover)
+            .insert(Transform::from_xyz(0.02 * f32::from(i), 0.0, 0.0));
+        test.frames(1, FRAME);
+    }
+    assert!(test.recorded(PassName::Waves) > 0);
+}
