@@ -1,11 +1,15 @@
 //! Plugins alone, left out of the group, and without a renderer.
 
+use std::time::Duration;
+
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use rain_plugins::prelude::*;
 use rain_plugins::scenario::headless;
 use test_support::app::{FRAME, spawn_camera, target_image};
 use test_support::{gpu, world};
+
+use crate::puddles::hollow_ground;
 
 const SIZE: [u32; 2] = [96, 54];
 
@@ -87,20 +91,29 @@ fn core_effects_are_on_whenever_it_rains() {
         headless::finish(&mut app);
         let target = target_image(&mut app, SIZE);
         spawn_camera(&mut app, &target, true);
-        world::ground(app.world_mut());
+        // Ground with a hollow: rings need water to be on.
+        let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(hollow_ground());
+        let mut materials = app.world_mut().resource_mut::<Assets<StandardMaterial>>();
+        let material = materials.add(StandardMaterial::default());
+        app.world_mut().spawn((Mesh3d(mesh), MeshMaterial3d(material)));
         app.world_mut().spawn(weather);
-        headless::step(&mut app, FRAME).expect("the renderer goes on");
-        headless::step(&mut app, std::time::Duration::from_secs(600)).expect("the renderer goes on");
-        for _ in 0..12 {
-            headless::step(&mut app, FRAME).expect("the renderer goes on");
-        }
+        let mut go = |frames: u32, each: Duration| {
+            for _ in 0..frames {
+                headless::step(&mut app, each).expect("the renderer goes on");
+            }
+        };
+        go(3, FRAME);
+        go(1, Duration::from_secs(2));
+        go(3, FRAME);
+        go(1, Duration::from_secs(1200));
+        go(8, FRAME);
         let mut wet = app.world_mut().query::<&rain_plugins::surface::DryMaterial>();
         let wet = wet.iter(app.world()).count() as u64;
         let report = app.world().resource::<RainReport>();
         let passes = [PassName::Cover, PassName::Rainfall, PassName::Ripples];
         (passes.map(|pass| report.recorded_frames(pass)), wet)
     };
-    let (passes, wet) = seen(Weather::rain(25.0));
+    let (passes, wet) = seen(Weather::rain(60.0));
     assert!(
         passes.iter().all(|frames| *frames > 0) && wet == 1,
         "cover, drops, ripples {passes:?}; {wet} wet meshes"

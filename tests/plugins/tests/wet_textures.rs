@@ -108,6 +108,7 @@ fn a_baked_texel_is_the_pixel_that_the_shader_shows() {
         };
         let plain = show(&mut test, &dry, None);
         for (look, rules) in looks {
+            let mut seen = 0;
             for (state, [wetness, film, water]) in states {
                 let by_shader = SurfaceWetting {
                     look: Some(look),
@@ -126,8 +127,9 @@ fn a_baked_texel_is_the_pixel_that_the_shader_shows() {
                 let baked = show(&mut test, &in_bytes(wet_texel(&dry, &weather, 1.0)), None);
                 let off = apart(&shown, &baked);
                 assert!(off <= 1, "{look:?} {state:?} {dry:?}: {off}");
-                assert!(apart(&plain, &shown) > 4, "{look:?} {state:?} {dry:?}: it is not seen");
+                seen = seen.max(apart(&plain, &shown));
             }
+            assert!(seen > 4, "{look:?} {dry:?}: water is not seen, {seen}");
         }
     }
 }
