@@ -40,7 +40,8 @@ pub const LIBRARIES: &[Library] = library![
     "waves",
     "ring_layers",
     "water_column",
-    "water_map"
+    "water_map",
+    "surface_mask"
 ];
 
 /// A pass's own source.
