@@ -167,7 +167,7 @@ struct SurfaceParams {
 struct MaskView {
     // Clip to eye-relative world.
     eye_from_clip: mat4x4<f32>,
-    // x: near plane m, y: width px, z: height px, w: unused.
+    // x: near plane m, y: width px, z: height px, w: 1 where the view of masks shows what wet materials know.
     screen: vec4<f32>,
     surface: SurfaceParams,
 }

@@ -50,7 +50,8 @@ pub const LIBRARIES: &[Library] = library![
     "streak_texture",
     "lattice",
     "landing",
-    "splash"
+    "splash",
+    "surface_mask"
 ];
 
 /// A pass's own source.

@@ -1,4 +1,5 @@
-//! Measurement masks of a view: wetness, distance and standing water of every pixel, from the scene's depth.
+//! Measurement masks of a view: wetness, distance and standing water of every pixel, from the scene's depth, and from
+//! what wet materials wrote of their pixels where a view of masks was drawn.
 //!
 //! Output: three R32Float targets. Only recorded when somebody asked for a mask.
 
@@ -11,12 +12,33 @@ use crate::gpu_types::{MaskView, SurfaceParams};
 /// Format of the wet, distance and water masks.
 pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// Pipeline and uniform of the mask pass.
+/// Format of the texture that keeps what wet materials know of a view's pixels.
+pub const KNOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// A texture of [`KNOWN_FORMAT`], to be copied to. Units: px.
+#[must_use]
+pub fn known_texture(device: &wgpu::Device, size_px: [u32; 2]) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("rain masks: known"),
+        size: wgpu::Extent3d {
+            width: size_px[0].max(1),
+            height: size_px[1].max(1),
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: KNOWN_FORMAT,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// Pipeline of the mask pass.
 #[derive(Debug)]
 pub struct MaskGpu {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
-    uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
     /// Stands for a ground that is not there.
     nothing: wgpu::TextureView,
@@ -107,6 +129,7 @@ impl MaskGpu {
                 },
                 colour(5, false, plane),
                 colour(6, true, wgpu::TextureViewDimension::D2Array),
+                colour(7, false, plane),
             ],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -144,12 +167,6 @@ impl MaskGpu {
         Self {
             layout,
             pipeline,
-            uniform: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("rain masks"),
-                size: size_of::<MaskView>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("rain masks"),
                 address_mode_u: wgpu::AddressMode::Repeat,
@@ -168,7 +185,8 @@ impl MaskGpu {
 
     /// Uploads a view and binds its depth, the cover map and the ground's maps.
     ///
-    /// `eye_from_clip`: clip to eye-relative world; `near_m`: near plane, m; `size_px`: target size.
+    /// `eye_from_clip`: clip to eye-relative world; `near_m`: near plane, m; `size_px`: target size; `known`: what wet
+    /// materials know of the same pixels ([`KNOWN_FORMAT`], `rain_mask_texel`).
     #[must_use]
     pub fn prepare(
         &self,
@@ -181,13 +199,21 @@ impl MaskGpu {
         scene_depth: &wgpu::TextureView,
         cover: &wgpu::TextureView,
         ground: Option<GroundMaps<'_>>,
+        known: Option<&wgpu::TextureView>,
     ) -> wgpu::BindGroup {
         let view = MaskView {
             eye_from_clip: eye_from_clip.to_cols_array_2d(),
-            screen: [near_m, size_px.x, size_px.y, 0.0],
+            screen: [near_m, size_px.x, size_px.y, f32::from(u8::from(known.is_some()))],
             surface,
         };
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&view));
+        // Each view has its own.
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("rain masks"),
+            size: size_of::<MaskView>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&view));
         let maps = ground.unwrap_or(GroundMaps {
             films: &self.nothing,
             levels: &self.nothing,
@@ -198,13 +224,14 @@ impl MaskGpu {
             label: Some("rain masks"),
             layout: &self.layout,
             entries: &[
-                entry(0, self.uniform.as_entire_binding()),
+                entry(0, uniform.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(scene_depth)),
                 entry(2, wgpu::BindingResource::TextureView(cover)),
                 entry(3, wgpu::BindingResource::TextureView(maps.films)),
                 entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
                 entry(5, wgpu::BindingResource::TextureView(maps.levels)),
                 entry(6, wgpu::BindingResource::TextureView(maps.map)),
+                entry(7, wgpu::BindingResource::TextureView(known.unwrap_or(&self.nothing))),
             ],
         })
     }

@@ -17,13 +17,14 @@ mod wave_levels;
 mod wet_material;
 
 use bevy::asset::RenderAssetUsages;
-use bevy::camera::{Hdr, RenderTarget};
+use bevy::camera::{Exposure, Hdr, RenderTarget, SubCameraView};
 use bevy::core_pipeline::Core3dSystems;
-use bevy::core_pipeline::core_3d::main_transparent_pass_3d;
+use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::core_pipeline::schedule::{Core3d, camera_driver};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
+use bevy::pbr::main_transmissive_pass_3d;
 use bevy::prelude::*;
 pub(crate) use bevy::render::RenderApp;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
@@ -36,6 +37,7 @@ use bevy::render::renderer::RenderGraph;
 use bevy::render::sync_component::SyncComponent;
 use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 
+use rain_render::masks::KNOWN_FORMAT;
 use rain_render::reflection::REFLECTION_FORMAT;
 use rain_render::water_map::WaterMapSettings;
 
@@ -45,7 +47,7 @@ pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
 use crate::cover::RainCoverView;
 use crate::rainfall::SoftwareAdapter;
 use crate::report::RainReport;
-use crate::surface::RainMirrorView;
+use crate::surface::{RainMaskView, RainMirrorView};
 
 /// Images that receive measurement masks of a view; put on a camera with [`crate::rainfall::RainView`],
 /// `DepthPrepass` and `Msaa::Off`. Made with [`mask_image`].
@@ -53,11 +55,12 @@ use crate::surface::RainMirrorView;
 pub struct RainMasks {
     /// Coverage by streaks (R16Float).
     pub rain: Handle<Image>,
-    /// Pore saturation (R32Float): of the ground what it remembers, elsewhere the weather's where rain reaches.
+    /// Pore saturation (R32Float): what wet materials show; of other things that of the weather where rain reaches.
     pub wet: Handle<Image>,
     /// Distance from the eye, m (R32Float).
     pub depth: Handle<Image>,
-    /// Depth of the standing water that [`crate::surface::WaterLevels`] know of, m (R32Float).
+    /// Depth of standing water, m (R32Float): that of [`crate::surface::WaterLevels`] and, on wet materials, what artists
+    /// placed.
     pub water: Handle<Image>,
 }
 
@@ -66,6 +69,20 @@ impl SyncComponent for RainMirrorView {
 }
 
 impl ExtractComponent for RainMirrorView {
+    type QueryData = &'static Self;
+    type QueryFilter = ();
+    type Out = Self;
+
+    fn extract_component(item: &Self) -> Option<Self> {
+        Some(*item)
+    }
+}
+
+impl SyncComponent for RainMaskView {
+    type Target = Self;
+}
+
+impl ExtractComponent for RainMaskView {
     type QueryData = &'static Self;
     type QueryFilter = ();
     type Out = Self;
@@ -221,6 +238,35 @@ pub(crate) fn mirror_camera(target: Handle<Image>) -> impl Bundle {
     )
 }
 
+/// So dark that wet materials draw what they know instead: see `RAIN_MASK_EXPOSURE`.
+const MASK_EV100: f32 = 60.0;
+
+/// What a camera of masks draws into.
+pub(crate) fn mask_target(size: UVec2) -> Image {
+    let mut image = Image::new_target_texture(size.x, size.y, KNOWN_FORMAT, None);
+    image.asset_usage = RenderAssetUsages::RENDER_WORLD;
+    image
+}
+
+/// A camera that draws what wet materials know of their pixels, before all others.
+pub(crate) fn mask_camera(target: Handle<Image>, sub_camera_view: Option<SubCameraView>) -> impl Bundle {
+    (
+        Name::new("rain mask view"),
+        Camera3d::default(),
+        Camera {
+            order: -80,
+            clear_color: ClearColorConfig::Custom(Color::NONE),
+            sub_camera_view,
+            ..default()
+        },
+        RenderTarget::from(target),
+        Hdr,
+        Exposure { ev100: MASK_EV100 },
+        Tonemapping::None,
+        Msaa::Off,
+    )
+}
+
 /// Which mask an image is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MaskKind {
@@ -275,6 +321,7 @@ impl Plugin for RainRenderPlugin {
         app.insert_resource(levels.clone()).add_plugins((
             ExtractComponentPlugin::<RainCoverView>::default(),
             ExtractComponentPlugin::<RainMirrorView>::default(),
+            ExtractComponentPlugin::<RainMaskView>::default(),
             wet_material::WetMaterialPlugin,
         ));
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
@@ -318,6 +365,12 @@ impl Plugin for RainRenderPlugin {
                     record::keep_reflection
                         .after(Core3dSystems::MainPass)
                         .before(Core3dSystems::EarlyPostProcess),
+                    // Glass and the like hide nothing from masks.
+                    record::keep_known
+                        .in_set(Core3dSystems::MainPass)
+                        .after(main_opaque_pass_3d)
+                        .before(main_transmissive_pass_3d)
+                        .before(main_transparent_pass_3d),
                     (splash::splash, record::rainfall)
                         .chain()
                         .in_set(Core3dSystems::MainPass)

@@ -10,12 +10,13 @@ use bevy::render::camera::ExtractedCamera;
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::storage::GpuShaderBuffer;
+use bevy::render::sync_world::MainEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa};
 use rain_render::compose;
 use rain_render::cover::{CoverPlacement, open_sky};
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams, WaterMapPlaces};
-use rain_render::masks::{GroundMaps, MaskGpu};
+use rain_render::masks::{GroundMaps, MaskGpu, known_texture};
 use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
 use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
 use rain_render::ring_layers::{RingLayerGpu, RingLayersGpu};
@@ -26,6 +27,7 @@ use rain_render::waves::{WaveTileGpu, WavesGpu};
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
 use super::splash::SplashViews;
 use crate::report::RainReport;
+use crate::surface::RainMaskView;
 
 /// Everything on the GPU that lives with the device; rebuilt after a device loss.
 #[derive(Resource)]
@@ -34,6 +36,8 @@ pub(super) struct RainGpu {
     pub views: HashMap<Entity, RainfallViewGpu>,
     pub masks: MaskGpu,
     pub mask_bind_groups: HashMap<Entity, wgpu::BindGroup>,
+    /// What wet materials know of the pixels of views with masks, by the view in the main world.
+    pub known: HashMap<Entity, wgpu::Texture>,
     pub reflection: ReflectionMipsGpu,
     /// The layers of the texture that mirrored views are kept in, and that texture.
     pub reflection_layers: Vec<ReflectionMipsTarget>,
@@ -74,6 +78,7 @@ impl FromWorld for RainGpu {
             views: HashMap::new(),
             masks: MaskGpu::new(device),
             mask_bind_groups: HashMap::new(),
+            known: HashMap::new(),
             reflection: ReflectionMipsGpu::new(device),
             reflection_layers: Vec::new(),
             reflection_kept: None,
@@ -293,6 +298,23 @@ fn surface_params(
     }
 }
 
+/// The texture that keeps what wet materials know of a view's pixels, if they are asked this frame.
+fn known_of(
+    known: &mut HashMap<Entity, wgpu::Texture>,
+    device: &wgpu::Device,
+    view: &ExtractedView,
+    main: Entity,
+    mask_views: &Query<&RainMaskView, With<ExtractedView>>,
+) -> Option<wgpu::TextureView> {
+    mask_views.iter().find(|own| own.of == main)?;
+    let size = [view.viewport.z, view.viewport.w];
+    let texture = known.entry(main).or_insert_with(|| known_texture(device, size));
+    if [texture.width(), texture.height()] != size {
+        *texture = known_texture(device, size);
+    }
+    Some(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}
+
 pub(super) fn prepare_rain(
     mut gpu: ResMut<RainGpu>,
     scene: Option<Res<ExtractedRainScene>>,
@@ -305,13 +327,14 @@ pub(super) fn prepare_rain(
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
-        Entity,
+        (Entity, &MainEntity),
         &ExtractedView,
         &ExtractedCamera,
         &ExtractedRainView,
         Option<&ViewPrepassTextures>,
         &Msaa,
     )>,
+    mask_views: Query<&RainMaskView, With<ExtractedView>>,
 ) {
     let Some(scene) = scene else { return };
     let gpu = &mut *gpu;
@@ -363,7 +386,8 @@ pub(super) fn prepare_rain(
     });
     gpu.mask_bind_groups.clear();
     gpu.views.retain(|entity, _| views.contains(*entity));
-    for (entity, view, camera, rain, prepass, msaa) in &views {
+    gpu.known.retain(|of, _| mask_views.iter().any(|view| view.of == *of));
+    for ((entity, main), view, camera, rain, prepass, msaa) in &views {
         let eye = view.world_from_view.translation();
         let rotation = view.world_from_view.rotation();
         let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32);
@@ -374,6 +398,7 @@ pub(super) fn prepare_rain(
         let near = view.clip_from_view.w_axis.z;
         if let (Some(_), Some(depth), Some(cover)) = (&rain.masks, scene_depth, cover_image) {
             let clip_from_eye = view.clip_from_view * Mat4::from_quat(rotation.inverse());
+            let known = known_of(&mut gpu.known, device, view, main.id(), &mask_views);
             let bind_group = gpu.masks.prepare(
                 device,
                 &queue,
@@ -384,6 +409,7 @@ pub(super) fn prepare_rain(
                 depth,
                 &cover.texture_view,
                 ground_maps,
+                known.as_ref(),
             );
             gpu.mask_bind_groups.insert(entity, bind_group);
         }

@@ -17,7 +17,7 @@ use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, Extrac
 use super::prepare::RainGpu;
 use crate::cover::RainCoverView;
 use crate::report::{PassName, RainReport};
-use crate::surface::RainMirrorView;
+use crate::surface::{RainMaskView, RainMirrorView};
 
 /// Copies the cover view's depth into the map that everybody reads: views share and recycle their own textures.
 pub(super) fn keep_cover_map(
@@ -133,6 +133,19 @@ pub(super) fn keep_reflection(
     encode_reflection_mips(&mut pass, &gpu.reflection, mips);
     drop(pass);
     report.recorded(PassName::Reflection);
+}
+
+/// Copies what wet materials know of a view's pixels for its masks.
+pub(super) fn keep_known(view: ViewQuery<(&ViewTarget, &RainMaskView)>, gpu: Res<RainGpu>, mut ctx: RenderContext) {
+    let (target, mask) = view.into_inner();
+    let source: &wgpu::Texture = target.main_texture();
+    let Some(kept) = gpu.known.get(&mask.of) else {
+        return;
+    };
+    if source.size() == kept.size() && source.format() == kept.format() {
+        ctx.command_encoder()
+            .copy_texture_to_texture(source.as_image_copy(), kept.as_image_copy(), source.size());
+    }
 }
 
 /// Draws into the part of the target that the view has; its pixels are counted from that part's corner.

@@ -121,6 +121,7 @@ impl Plugin for WetMaterialPlugin {
                 "artist_look",
                 "ground_memory",
                 "water_map",
+                "surface_mask",
             ]
             .contains(&library.name)
             {

@@ -14,6 +14,7 @@ use super::geometry::SceneGeometryPlugin;
 use super::ground::{GroundFilms, LevelsFromGround, follow_films, follow_ground};
 use super::look::WetLook;
 use super::map::{GroundMap, GroundMapSettings, create_map, follow_map};
+use super::mask_view::aim_mask_views;
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::reflection::{MirrorFrame, PlanarReflection, RainMirrorView, ReflectionSize, aim_mirrors};
 use super::state::{self, create_state, follow_weather};
@@ -167,6 +168,7 @@ impl Plugin for WetSurfacePlugin {
                         follow_films,
                         follow_map.run_if(resource_exists::<GroundMap>),
                         aim_mirrors,
+                        aim_mask_views,
                     )
                         .chain()
                         .in_set(RainViewSystems::Surfaces),

@@ -7,6 +7,7 @@
 @group(0) @binding(4) var film_sampler: sampler;
 @group(0) @binding(5) var level_map: texture_2d<f32>;
 @group(0) @binding(6) var near_map: texture_2d_array<f32>;
+@group(0) @binding(7) var known_map: texture_2d<f32>;
 
 struct Masks {
     @location(0) wet: vec4<f32>,
@@ -55,7 +56,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     let to_rain = normalize(vec3<f32>(-cover.wind.x * cover.inverse_speed, 1.0, -cover.wind.y * cover.inverse_speed));
     let exposure = rain_exposure(cover_map, cover, p + 0.03 * normal, rain_exposure_bias(cover, normal))
         * rain_catch(normal.y, dot(normal, to_rain));
-    // As the wet material shows it: the weather's wetness where the rain reaches, what the ground remembers on it, and
+    // As a wet material would show it: the weather's wetness where the rain reaches, what the ground remembers on it, and
     // all soaked under a puddle.
     let films = rain_film_texel(film_map, film_sampler, view.surface.levels, p);
     var ground = vec3<f32>(0.0);
@@ -68,6 +69,12 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     let puddle = rain_puddle_rim(depth_of_water) * smoothstep(0.85, 0.95, normal.y);
     out.wet = vec4<f32>(max(wet, smoothstep(0.0, 0.5, puddle)), 0.0, 0.0, 0.0);
     out.water = vec4<f32>(select(0.0, max(depth_of_water, 0.0), puddle > 0.0), 0.0, 0.0, 0.0);
+    if (view.screen.w > 0.5) {
+        // Wet materials know better: what artists placed, their own strength, a wetness of their own.
+        let known = rain_mask_of(textureLoad(known_map, texel, 0));
+        out.wet.x = select(out.wet.x, known.x, known.z > 0.5);
+        out.water.x = select(out.water.x, known.y, known.z > 0.5);
+    }
     out.depth = vec4<f32>(length(p), 0.0, 0.0, 0.0);
     return out;
 }

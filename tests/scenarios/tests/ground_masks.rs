@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use bevy::math::{DVec2, Vec3};
-use rain_plugins::prelude::MovesInRain;
+use bevy::mesh::VertexAttributeValues;
+use bevy::prelude::*;
+use rain_plugins::prelude::*;
 use rain_plugins::scenario::file::ScenePart;
 use rain_plugins::surface::GroundMap;
 use test_support::shots::{Plan, View, mean, raining, steady};
@@ -89,6 +91,106 @@ fn the_wet_mask_shows_the_dry_patch_that_a_truck_leaves_as_the_water_map_knows_i
     assert!(under < 0.15 && beside > 0.8, "{under} under it, {beside} beside it");
     let [under, beside] = shown(false);
     assert!(under > 0.8 && beside > 0.8, "without the map {under} and {beside}");
+}
+
+/// Gives a mesh of its own to an entity whose vertices all have this colour.
+fn colour(world: &mut World, entity: Entity, colour: [f32; 4]) {
+    let handle = world.get::<Mesh3d>(entity).expect("a mesh").0.clone();
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    let mut mesh = meshes.get(&handle).expect("its data").clone();
+    let count = mesh.count_vertices();
+    mesh.insert_attribute(
+        Mesh::ATTRIBUTE_COLOR,
+        VertexAttributeValues::Float32x4(vec![colour; count]),
+    );
+    let own = meshes.add(mesh);
+    world.entity_mut(entity).insert(Mesh3d(own));
+}
+
+#[test]
+fn masks_show_what_artists_placed_and_how_meshes_take_water() {
+    if !gpu::available() {
+        return;
+    }
+    let view = View::new([0.0, 10.0, 0.0], [0.0, 0.0, 0.0]);
+    let plan = Plan::new(steady(50.0, [0.0; 3]), 120.0, &[view]);
+    let noise = NoisePuddles {
+        seed: 3,
+        size_m: 0.7,
+        level: Some(0.8),
+        height_map: false,
+        ..default()
+    };
+    let mut session = plan.session(Path::new("."), |world| {
+        world::without_ground(world);
+        world::ground(world);
+        let [painted, unpainted, noisy, proof] = [-6.0, -2.0, 2.0, 6.0].map(|x| {
+            let (low, high) = (Vec3::new(x - 1.0, 0.0, -1.0), Vec3::new(x + 1.0, 0.1, 1.0));
+            world::block(world, "plate", low, high, world::STONE)
+        });
+        // A full puddle where the paint counts; vertex colours alone are none.
+        for plate in [painted, unpainted] {
+            colour(world, plate, [1.0, 1.0, 1.0, 0.0]);
+        }
+        world.entity_mut(painted).insert(PuddlePaint {
+            fixed: true,
+            height_map: false,
+            depth_m: 0.02,
+            ..default()
+        });
+        world.entity_mut(noisy).insert(noise);
+        world.entity_mut(proof).insert(SurfaceWetting {
+            strength: 0.0,
+            ..default()
+        });
+        // Masks see through what is transparent.
+        let glass = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
+            base_color: Color::srgba(1.0, 0.2, 0.2, 0.5),
+            alpha_mode: AlphaMode::Blend,
+            ..default()
+        });
+        let (low, high) = (Vec3::new(-7.0, 1.0, 0.0), Vec3::new(-5.0, 1.05, 1.0));
+        world::block_of(world, "pane", low, high, glass);
+    });
+    let shot = plan.shot(&mut session, 0);
+    let at = |x: f64, y: f64| {
+        let pixels = shot.where_surface(|p| (p.y - y).abs() < 0.02 && (p.x - x).abs() < 0.8 && p.z.abs() < 0.8);
+        assert!(pixels.len() > 60, "{} pixels at {x}", pixels.len());
+        pixels
+    };
+    let painted = at(-6.0, 0.1);
+    assert!(
+        painted.iter().all(|p| (p.water - 0.02).abs() < 2e-5 && p.wet > 0.999),
+        "{:?}",
+        painted[0]
+    );
+    for (x, y) in [(-2.0, 0.1), (4.0, 0.0)] {
+        let without = at(x, y);
+        assert!(
+            without.iter().all(|p| p.water == 0.0 && p.wet > 0.99),
+            "nobody placed water at {x}: {:?}",
+            without[0]
+        );
+    }
+    let noisy = at(2.0, 0.1);
+    let depth = |p: &test_support::shots::Pixel| {
+        let place = p.surface.expect("on the plate");
+        noise.depth_m(DVec2::new(place.x, place.z), 0.0, 0.0)
+    };
+    for p in &noisy {
+        assert!((p.water - depth(p)).abs() < 2e-4, "{p:?}, not {} m", depth(p));
+    }
+    let (least, most) = noisy
+        .iter()
+        .map(|p| p.water)
+        .fold((1.0_f64, 0.0_f64), |(l, h), w| (l.min(w), h.max(w)));
+    assert!(least == 0.0 && most > 0.004, "from {least} to {most} m");
+    let proof = at(6.0, 0.1);
+    assert!(
+        proof.iter().all(|p| p.water == 0.0 && p.wet == 0.0),
+        "it takes no water: {:?}",
+        proof[0]
+    );
 }
 
 #[test]

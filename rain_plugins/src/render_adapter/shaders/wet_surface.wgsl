@@ -15,7 +15,7 @@
     rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_noise_puddle, rain_normal_aslant, rain_udn,
     rain_film_texel, rain_memory_of, rain_memory_share, rain_puddle_rim, rain_water_map,
     rain_across_and_along, rain_rut_height, rain_film_wave_velocity, rain_film_wave_slope, rain_film_wavelets,
-    ArtistLook, rain_artist_surface, rain_lagarde_porosity, rain_fixed_state,
+    ArtistLook, rain_artist_surface, rain_lagarde_porosity, rain_fixed_state, RAIN_MASK_EXPOSURE, rain_mask_texel,
 }
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::{
@@ -355,6 +355,10 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     let mirrored = mirrored_radiance(p, pbr.N, to_eye, pbr.material.perceptual_roughness, film);
     pbr.specular_occlusion *= 1.0 - mirrored.w;
     var out: FragmentOutput;
+    if (view.exposure < RAIN_MASK_EXPOSURE) {
+        out.color = rain_mask_texel(wetness, select(0.0, max(depth, 0.0), puddle > 0.0));
+        return out;
+    }
     if (wetting.paint_flags.z > 0.5) {
         let shown = select(select(vec3<f32>(placed.water), vec3<f32>(paint.r), wetting.paint_flags.z < 2.5), paint.rgb,
             wetting.paint_flags.z < 1.5);
