@@ -25,6 +25,8 @@ pub struct RateLadder {
     distribution: Distribution,
     /// ln of the threshold's scale, and its slope, by class and knot.
     knots: [Vec<[f32; 2]>; CLASS_COUNT],
+    /// No rank above this exists up to a knot's rate, by class and knot.
+    limits: [Vec<f32>; CLASS_COUNT],
 }
 
 impl RateLadder {
@@ -34,15 +36,23 @@ impl RateLadder {
         let decades = ops::ln(MAX_INTENSITY_MM_H / FIRST_MM_H) / core::f64::consts::LN_10;
         let count = (decades * KNOTS_PER_DECADE).ceil() as usize + 1;
         let mut knots: [Vec<[f32; 2]>; CLASS_COUNT] = Default::default();
+        let mut limits: [Vec<f32>; CLASS_COUNT] = Default::default();
         for knot in 0..count {
             let rate = FIRST_MM_H * ops::exp(knot as f64 * core::f64::consts::LN_10 / KNOTS_PER_DECADE);
             if let Ok(spectrum) = Spectrum::new(distribution, rate.min(MAX_INTENSITY_MM_H)) {
-                for (class, knots) in SizeClass::all().iter().zip(&mut knots) {
-                    knots.push(Threshold::new(class, &spectrum).ln_line());
+                for (k, class) in SizeClass::all().iter().enumerate() {
+                    let threshold = Threshold::new(class, &spectrum);
+                    knots[k].push(threshold.ln_line());
+                    let before = limits[k].last().copied().unwrap_or(0.0);
+                    limits[k].push(threshold.scan_limit().max(before));
                 }
             }
         }
-        Self { distribution, knots }
+        Self {
+            distribution,
+            knots,
+            limits,
+        }
     }
 
     /// The family.
@@ -80,20 +90,12 @@ impl RateLadder {
         ))
     }
 
-    /// No rank above this exists at any rate between two (mm/h).
-    fn scan_limit(&self, class: usize, [low, high]: [f64; 2]) -> f32 {
-        let of = |rate: f64| {
-            self.threshold(class, rate)
-                .map_or(0.0, |threshold| threshold.scan_limit())
-        };
-        let knots = &self.knots[class];
-        let first = Self::place(low.max(FIRST_MM_H)).max(0.0) as usize;
-        let last = (Self::place(high.max(FIRST_MM_H)).max(0.0).ceil() as usize).min(knots.len() - 1);
-        let size = SizeClass::new(class);
-        // Between two knots a threshold is at most that of the greater.
-        (first..=last).fold(of(low).max(of(high)), |most, knot| {
-            most.max(Threshold::of_ln_line(&size, knots[knot]).scan_limit())
-        })
+    /// No rank above this exists at any rate up to this one (mm/h).
+    fn scan_limit(&self, class: usize, highest_mm_h: f64) -> f32 {
+        let limits = &self.limits[class.min(CLASS_COUNT - 1)];
+        let place = Self::place(highest_mm_h.max(FIRST_MM_H)).max(0.0).ceil() as usize;
+        // Between two knots a threshold is at most that of the greater, but for rounding.
+        1.001 * limits[place.min(limits.len() - 1)]
     }
 }
 
@@ -128,7 +130,7 @@ impl LocalRain<'_> {
                 .threshold(class, rates[0])
                 .map_or(CellRain::Dry, CellRain::Even)
         } else {
-            CellRain::Uneven(self.ladder.scan_limit(class, rates))
+            CellRain::Uneven(self.ladder.scan_limit(class, rates[1]))
         }
     }
 
