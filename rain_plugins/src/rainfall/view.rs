@@ -136,7 +136,7 @@ pub(crate) struct SoftwareAdapter(pub(crate) bool);
 
 /// Rates and spectra under rain areas; their memory is used again.
 #[derive(Default)]
-pub(super) struct LocalSpectra {
+pub(crate) struct LocalSpectra {
     field: AreaField,
     ladder: Option<RateLadder>,
 }

@@ -174,6 +174,7 @@ fn aim_splashes(
     air: Res<AirAroundView>,
     cover: Option<Res<CoverMap>>,
     surface: Option<Res<SurfaceState>>,
+    areas: Option<Res<RainAreas>>,
     mut views: Query<(
         Entity,
         &RainView,
@@ -189,6 +190,7 @@ fn aim_splashes(
     let now = clock.now_s() + since_tick;
     // In steps, so that tables last while the film grows; downwards, so that nothing that splashes is left out.
     let film_mm = surface.map_or(0.0, |s| (f64::from(s.state.y) / FILM_STEP_MM).floor() * FILM_STEP_MM);
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
     let mut any = false;
     for (entity, view, camera, projection, transform, motion, mut frame) in &mut views {
         any = true;
@@ -196,6 +198,15 @@ fn aim_splashes(
         // A bad `RainView` has been named; the defaults stand in for it.
         let view = view.validated().unwrap_or_default();
         let size = camera.physical_viewport_size().unwrap_or_default();
+        // Under areas the rain at the eye, in steps of 2 %: splashes are drawn near it.
+        let spectrum = areas.map_or(*field.spectrum(), |areas| {
+            let rate = areas.rate_at(transform.translation().as_dvec3());
+            field.spectrum_at(if rate > 0.0 {
+                libm::exp(libm::round(50.0 * libm::log(rate)) / 50.0)
+            } else {
+                0.0
+            })
+        });
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
         } else if !view.enabled
@@ -205,7 +216,7 @@ fn aim_splashes(
             || settings.distance_m <= 0.0
         {
             Some(SkipReason::Disabled)
-        } else if !field.is_raining() {
+        } else if spectrum.intensity_mm_h <= 0.0 {
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_)) {
             Some(SkipReason::Unsupported)
@@ -226,7 +237,7 @@ fn aim_splashes(
         let near_m = settings.drops_distance_m.min(settings.distance_m);
         let source = Source {
             seed: seed.0,
-            spectrum: *field.spectrum(),
+            spectrum,
             extent: SplashExtent {
                 reach_m: settings.distance_m.into(),
                 near_m: near_m.into(),
