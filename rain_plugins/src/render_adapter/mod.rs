@@ -20,7 +20,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::camera::{Exposure, Hdr, RenderTarget, SubCameraView};
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
-use bevy::core_pipeline::prepass::DepthPrepass;
+pub(crate) use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::core_pipeline::schedule::{Core3d, camera_driver};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor};

@@ -2,13 +2,12 @@
 
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{RenderTarget, SubCameraView};
-use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 
 use super::state::SurfaceState;
 use crate::rainfall::RainView;
-use crate::render_adapter::{RainMasks, mask_camera, mask_target};
+use crate::render_adapter::{DepthPrepass, RainMasks, mask_camera, mask_target};
 
 /// Marks the plugin's own cameras that draw masks.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
