@@ -135,7 +135,7 @@ fn the_water_map_gets_each_texels_own_rain() {
         exposure: 255,
     };
     map.set_ground(&place, std::iter::repeat_n(cell, 320 * 320)).unwrap();
-    map.follow([at.x, at.y]);
+    map.follow([at.x, at.y], &[]);
     let (mut frame, mut packed) = (WaterMapFrame::default(), AreaFieldF32::default());
     let open = WaterMapInput {
         cover: open_sky(),

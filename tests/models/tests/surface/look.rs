@@ -427,7 +427,7 @@ fn the_four_states_follow_pores_and_film() {
         let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     };
-    let (mut worst, mut wrong) = (Worst::default(), Worst::default());
+    let (mut worst, mut rough, mut wrong) = (Worst::default(), Worst::default(), Worst::default());
     for texture in [0.0, 0.004, 0.01, 0.8, 1.0, 37.0, 1000.0] {
         // The least texture that a weight sees; the roughness sees any.
         let t = f64::max(texture, 0.01);
@@ -450,13 +450,16 @@ fn the_four_states_follow_pores_and_film() {
                 ] {
                     worst.absolute(found, exact, || format!("{w} {h} {texture}"));
                 }
+                let exact = one_lobe(0.6, w, ramp(0.5 * t, 1.5 * t, h));
+                rough.absolute(film_roughness(0.6, w, h, t), exact, || format!("{w} {h} {texture}"));
                 let off = SurfaceWeights::new(w, 1.05 * h, texture).expect("valid");
                 wrong.absolute(off.puddle, puddle, String::new);
             }
         }
     }
     assert!(wrong.error > 0.05, "a film 5 % off goes unseen");
-    worst.assert_below(5e-16, 40_000);
+    worst.assert_below(3e-16, 40_000);
+    rough.assert_below(5e-16, 8_000);
 }
 
 /// Width of one lobe as high as two that share a surface.
