@@ -97,6 +97,7 @@ pub(super) fn follow_weather(
         surface.by_hand = WaterByHand::default();
         (surface.state, surface.artist) = (Vec4::ZERO, Vec4::ZERO);
         surface.placed = puddles || placed_water(Vec4::ZERO, painted.iter(), noises.iter());
+        surface.shown |= surface.placed;
         return;
     };
     // Under areas the ground may be wet although the weather is dry, and stay so when they are gone.
@@ -130,6 +131,7 @@ pub(super) fn follow_weather(
         f32::from(u8::from(weather.mode() == WeatherMode::Artist)),
     );
     surface.placed = puddles || placed_water(surface.artist, painted.iter(), noises.iter());
+    surface.shown |= surface.placed;
     let wind = weather.conditions().wind_m_s;
     surface.wind_m_s = Vec2::new(wind.x as f32, wind.z as f32);
     let seconds = clock.now_s() + f64::from(clock.interpolation()) * clock.tick_ns() as f64 / 1e9;

@@ -136,26 +136,20 @@ fn bad_meshes_are_named_and_break_no_pixel_and_the_rest_gets_wet() {
     assert!(depth(&mut test, 0.0, 0.0) > 0.01, "the hollow under them fills");
 }
 
-#[test]
-fn a_mesh_without_usable_normals_gets_wet_like_one_with_them() {
-    if !gpu::available() {
-        return;
-    }
+/// Brightness of three wet plates in a row with these normals.
+fn wet_plates(normals: [Option<[f32; 3]>; 3]) -> [f64; 3] {
     let mut test = TestApp::new([96, 48], true);
     test.world().insert_resource(SurfaceSettings {
         enabled: false,
         ..default()
     });
-    let with = |normal: Option<[f32; 3]>| {
+    for (x, normal) in [-1.2, 0.0, 1.2].into_iter().zip(normals) {
         let mesh = list(square());
-        match normal {
+        let mesh = match normal {
             Some(normal) => mesh.with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![normal; 6]),
             None => mesh,
-        }
-    };
-    let normals = [Some([0.0, 1.0, 0.0]), None, Some([f32::NAN; 3])];
-    for (x, normal) in [-1.2, 0.0, 1.2].into_iter().zip(normals) {
-        place(test.world(), with(normal), Transform::from_xyz(x, 0.0, 0.0));
+        };
+        place(test.world(), mesh, Transform::from_xyz(x, 0.0, 0.0));
     }
     let camera = test.camera;
     surfaces_only(&mut test, camera);
@@ -165,16 +159,25 @@ fn a_mesh_without_usable_normals_gets_wet_like_one_with_them() {
     rain(&mut test, weather, 50.0, 300);
     let picture = test.picture();
     // 45° high from 2.5 m: 23.2 px a metre.
-    let [proper, none, broken] = [20, 48, 76].map(|x| brightness(&part(&picture, x - 4, 20, 8, 8)));
-    assert!(proper > 20.0, "{proper}");
-    assert!(
-        (none - proper).abs() < 2.0,
-        "{none} without normals, {proper} with them"
-    );
-    assert!(
-        (broken - proper).abs() < 2.0,
-        "{broken} with broken normals, {proper} with good ones"
-    );
+    [20, 48, 76].map(|x| brightness(&part(&picture, x - 4, 20, 8, 8)))
+}
+
+#[test]
+fn a_mesh_without_usable_normals_gets_wet_like_one_with_them() {
+    if !gpu::available() {
+        return;
+    }
+    // The sun's glint differs from place to place: each is compared with a proper one where it lies.
+    let up = Some([0.0, 1.0, 0.0]);
+    let proper = wet_plates([up; 3]);
+    let found = wet_plates([up, None, Some([f32::NAN; 3])]);
+    assert!(proper[0] > 20.0, "{proper:?}");
+    for (found, proper) in found.into_iter().zip(proper) {
+        assert!(
+            (found - proper).abs() < 1.0,
+            "{found} where a proper one shows {proper}"
+        );
+    }
 }
 
 #[test]

@@ -188,7 +188,9 @@ fn running_film(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, normal: vec3<f32>,
     let place = rain_surface.water.place;
     // Above the texture, mm; steep faces have films too thin for waves.
     let above = max(rain_surface.state.y - rain_surface.state.z, 0.0) * film * smoothstep(0.5, 0.8, normal.y);
-    let strength = place.z * wetting.flow.w;
+    // Faces a few tenths of a percent aslant are level but for rounding; a mesh's own flow needs no slope.
+    let runs = max(smoothstep(0.002, 0.006, length(normal.xz)), smoothstep(0.0, 0.01, length(own)));
+    let strength = place.z * wetting.flow.w * runs;
     if (strength * above <= 0.0) {
         return out;
     }
