@@ -83,7 +83,7 @@ pub fn film_wave_slope(film_mm: f64, wave_speed_m_s: f64) -> f64 {
 pub fn film_wavelets(place_m: [f64; 2], time_s: f64, velocity_m_s: [f64; 2], footprint_m: f64) -> [f64; 2] {
     let speed = ops::sqrt(velocity_m_s[0] * velocity_m_s[0] + velocity_m_s[1] * velocity_m_s[1]);
     let near = place_m.iter().all(|p| p.abs() <= 1e6);
-    if !(near && time_s >= 0.0 && time_s <= 1e9 && speed > 0.0 && speed <= 1e3) {
+    if !(near && (0.0..=1e9).contains(&time_s) && speed > 0.0 && speed <= 1e3) {
         return [0.0; 2];
     }
     let along = velocity_m_s.map(|v| v / speed);

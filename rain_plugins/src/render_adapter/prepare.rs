@@ -377,7 +377,7 @@ pub(super) fn prepare_rain(
         .as_ref()
         .filter(|s| s.shown)
         .and_then(|s| s.images)
-        .and_then(|ids| Some([ids.films, ids.levels, ids.map].map(|id| images.get(id))))
+        .map(|ids| [ids.films, ids.levels, ids.map].map(|id| images.get(id)))
         .and_then(|[films, levels, map]| Some((films?, levels?, map?)));
     let ground_maps = ground_maps.map(|(films, levels, map)| GroundMaps {
         films: &films.texture_view,

@@ -57,7 +57,7 @@ pub struct SplashInput<'a> {
 impl SplashInput<'_> {
     fn reach_m(&self) -> f32 {
         // What is not a number reaches nowhere.
-        self.reach_m.max(0.0).min(LARGEST_REACH_M)
+        held(self.reach_m, 0.0, LARGEST_REACH_M)
     }
 
     /// Cells on each side of the eye's.
@@ -98,12 +98,12 @@ impl SplashInput<'_> {
             cell: self.anchor.cell.to_array(),
             focal: self.focal_px,
             near: self.near_m,
-            exposure: self.exposure_s.max(LEAST_EXPOSURE_S).min(1.0),
+            exposure: held(self.exposure_s, LEAST_EXPOSURE_S, 1.0),
             contrast: self.contrast,
             soft: self.soft_m,
             reach: self.reach_m(),
             near_reach: self.near_reach_m.max(0.0).min(self.reach_m()),
-            film: self.film_mm.max(0.0).min(1e6),
+            film: held(self.film_mm, 0.0, 1e6),
             since: self.anchor.since_s,
             span: self.span(),
             capacity: self.capacity,
@@ -117,4 +117,9 @@ impl SplashInput<'_> {
             classes,
         }
     }
+}
+
+/// Within bounds; NaN counts as the lower one.
+fn held(x: f32, low: f32, high: f32) -> f32 {
+    if x > low { x.min(high) } else { low }
 }

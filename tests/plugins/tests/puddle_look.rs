@@ -597,7 +597,7 @@ fn a_road_loses_its_mirror_after_the_rain_and_keeps_its_wetness() {
     };
     pond.weather(Weather {
         intensity_mm_h: 40.0,
-        ..damp.clone()
+        ..damp
     });
     pond.test.leap(1800);
     pond.weather(damp);

@@ -15,7 +15,8 @@ pub(super) fn from_half(half: u16) -> f32 {
 
 /// The nearest half float, ties to even; what is too large is the largest one. `x` is finite and not negative.
 pub(super) fn to_half(x: f32) -> u16 {
-    let x = x.max(0.0).min(65_504.0);
+    // NaN counts as 0.
+    let x = if x > 0.0 { x.min(65_504.0) } else { 0.0 };
     if x < f32::from_bits(113 << 23) {
         // Below 2^-14 halves are multiples of 2^-24; adding 2^-1 rounds to just those.
         let bits = (x + 0.5).to_bits();
