@@ -498,18 +498,6 @@ fn a_table_of_rain_types_sets_the_speeds_and_a_blend_passes_through_its_rows() {
         "{levels:?}"
     );
 
-    // A weather that is refused changes nothing.
-    let speeds = |app: &App| {
-        app.world()
-            .get::<ArtistControls>(entity)
-            .expect("written by the table")
-            .0
-    };
-    let before = speeds(&app);
-    app.world_mut().entity_mut(entity).insert(Weather::rain(1e6));
-    frame(&mut app, SECOND / 2);
-    assert_eq!(speeds(&app), before);
-
     // From light to heavy over eight seconds: the speeds rise without a step, those of the row between on the way.
     let [light, heavy] = [2.0, 10.0].map(Weather::rain);
     let way = WeatherTimeline::blend(&light, &heavy, 2.0, 8.0).expect("valid");

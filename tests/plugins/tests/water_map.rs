@@ -9,8 +9,6 @@ use rain_plugins::surface::GroundMap;
 use test_support::app::{FRAME, TestApp, spawn_camera, target_image};
 use test_support::{gpu, world};
 
-use crate::scenes::difference;
-
 /// Side of the picture, and its pixels per metre of ground. Units: px, px/m.
 const SIZE: u32 = 128;
 const PX_PER_M: f32 = 9.66;
@@ -305,25 +303,4 @@ fn the_map_lies_around_the_leading_view_of_those_far_apart() {
     test.world().get_mut::<Camera>(second).expect("a camera").order = -1;
     test.frames(3, FRAME);
     assert!(!finest(&test, 1.0) && finest(&test, 39.0));
-}
-
-#[test]
-fn another_weather_brings_none_of_its_own_rain_with_it() {
-    if !gpu::available() {
-        return;
-    }
-    let (mut test, weather) = from_above(true);
-    rain(&mut test, weather, 60.0, 1200);
-    let other = test.world().spawn(humid(0.0)).id();
-    test.world().entity_mut(weather).remove::<Weather>();
-    test.frames(4, FRAME);
-    rain(&mut test, other, 0.0, 3600);
-    let before = test.picture();
-    // Back to the one that has seen 20 mm.
-    test.world().entity_mut(other).remove::<Weather>();
-    test.world().entity_mut(weather).insert(humid(0.0));
-    test.frames(4, FRAME);
-    let after = test.picture();
-    let found = difference(&before, &after);
-    assert!(found.share == 0.0 && found.mean < 0.2, "{found:?}");
 }
