@@ -6,7 +6,7 @@ const RAIN_MASK_EXPOSURE: f32 = 1e-15;
 // Wetness 0..1 and depth of standing water, m, as half floats: the wetness in two parts. The negative alpha tells the
 // material from all others, which write 0 to 1.
 fn rain_mask_texel(wetness: f32, water: f32) -> vec4<f32> {
-    let coarse = unpack2x16float(pack2x16float(vec2<f32>(wetness, 0.0))).x;
+    let coarse = round(wetness * 1024.0) / 1024.0;
     return vec4<f32>(coarse, water, wetness - coarse, -1.0);
 }
 
