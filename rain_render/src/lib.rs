@@ -10,6 +10,7 @@ pub mod cover;
 pub mod gpu_types;
 pub mod lattice;
 pub mod masks;
+mod overlay;
 pub mod rainfall;
 pub mod reflection;
 pub mod ring_layers;

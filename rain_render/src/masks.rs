@@ -5,7 +5,7 @@
 
 use glam::{Mat4, Vec2};
 
-use crate::bindings::texture_entry;
+use crate::bindings::{sampler_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::{MaskView, SurfaceParams};
 
@@ -121,12 +121,7 @@ impl MaskGpu {
                 depth(1),
                 depth(2),
                 colour(3, true, plane),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 4,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    count: None,
-                },
+                sampler_entry(4, wgpu::ShaderStages::FRAGMENT),
                 colour(5, false, plane),
                 colour(6, true, wgpu::TextureViewDimension::D2Array),
                 colour(7, false, plane),

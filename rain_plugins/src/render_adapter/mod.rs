@@ -64,47 +64,26 @@ pub struct RainMasks {
     pub water: Handle<Image>,
 }
 
-impl SyncComponent for RainMirrorView {
-    type Target = Self;
+/// Markers that cameras carry into the render world as they are.
+macro_rules! extract_as_they_are {
+    ($($marker:ty),*) => {$(
+        impl SyncComponent for $marker {
+            type Target = Self;
+        }
+
+        impl ExtractComponent for $marker {
+            type QueryData = &'static Self;
+            type QueryFilter = ();
+            type Out = Self;
+
+            fn extract_component(marker: &Self) -> Option<Self> {
+                Some(*marker)
+            }
+        }
+    )*};
 }
 
-impl ExtractComponent for RainMirrorView {
-    type QueryData = &'static Self;
-    type QueryFilter = ();
-    type Out = Self;
-
-    fn extract_component(item: &Self) -> Option<Self> {
-        Some(*item)
-    }
-}
-
-impl SyncComponent for RainMaskView {
-    type Target = Self;
-}
-
-impl ExtractComponent for RainMaskView {
-    type QueryData = &'static Self;
-    type QueryFilter = ();
-    type Out = Self;
-
-    fn extract_component(item: &Self) -> Option<Self> {
-        Some(*item)
-    }
-}
-
-impl SyncComponent for RainCoverView {
-    type Target = Self;
-}
-
-impl ExtractComponent for RainCoverView {
-    type QueryData = &'static Self;
-    type QueryFilter = ();
-    type Out = Self;
-
-    fn extract_component(item: &Self) -> Option<Self> {
-        Some(*item)
-    }
-}
+extract_as_they_are!(RainMirrorView, RainMaskView, RainCoverView);
 
 /// An image without data for a GPU-only texture.
 fn gpu_image(label: &'static str, width: u32, height: u32, format: TextureFormat, usage: TextureUsages) -> Image {

@@ -148,6 +148,36 @@ pub(super) fn keep_known(view: ViewQuery<(&ViewTarget, &RainMaskView)>, gpu: Res
     }
 }
 
+/// A pass over a finished scene, against its depth.
+pub(super) fn over_scene<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &str,
+    colour: wgpu::RenderPassColorAttachment,
+    depth: &ViewDepthTexture,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(colour)],
+        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    })
+}
+
+/// A mask that nothing covers yet.
+pub(super) fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            store: wgpu::StoreOp::Store,
+        },
+    }
+}
+
 /// Draws into the part of the target that the view has; its pixels are counted from that part's corner.
 pub(super) fn draw_within(pass: &mut wgpu::RenderPass, viewport: UVec4) {
     let [x, y, width, height] = viewport.as_vec4().to_array();
@@ -187,14 +217,12 @@ pub(super) fn rainfall(
         span.end(&mut pass);
         drop(pass);
 
-        let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("rain_rainfall"),
-            color_attachments: &[Some(target.get_color_attachment())],
-            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
+        let mut pass = over_scene(
+            ctx.command_encoder(),
+            "rain_rainfall",
+            target.get_color_attachment(),
+            depth,
+        );
         let span = recorder.pass_span(&mut pass, "rain_rainfall");
         draw_within(&mut pass, view.viewport);
         encode_draw(&mut pass, &gpu.rainfall, view_gpu, view.target_format, msaa.samples());
@@ -216,22 +244,12 @@ pub(super) fn rainfall(
     if *msaa != Msaa::Off {
         return;
     }
-    let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("rain_mask_coverage"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &rain_mask.texture_view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
-    });
+    let mut pass = over_scene(
+        ctx.command_encoder(),
+        "rain_mask_coverage",
+        cleared(&rain_mask.texture_view),
+        depth,
+    );
     if let Some(view_gpu) = view_gpu {
         draw_within(&mut pass, view.viewport);
         encode_coverage(&mut pass, &gpu.rainfall, view_gpu, msaa.samples());

@@ -9,7 +9,6 @@ use bevy::render::Extract;
 use bevy::render::camera::ExtractedCamera;
 use bevy::render::diagnostic::RecordDiagnostics;
 use bevy::render::render_asset::RenderAssets;
-use bevy::render::render_resource::StoreOp;
 use bevy::render::renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery};
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::texture::GpuImage;
@@ -23,7 +22,7 @@ use rain_render::splash::{
 
 use super::extract::{ExtractedRainScene, ExtractedRainView};
 use super::prepare::{level_params, view_lighting};
-use super::record::draw_within;
+use super::record::{cleared, draw_within, over_scene};
 use crate::report::{PassName, RainReport};
 use crate::splash::{SplashMask, SplashShot, SplashViewFrame};
 
@@ -183,14 +182,12 @@ pub(super) fn splash(
         span.end(&mut pass);
         drop(pass);
 
-        let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("rain_splash"),
-            color_attachments: &[Some(target.get_color_attachment())],
-            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
+        let mut pass = over_scene(
+            ctx.command_encoder(),
+            "rain_splash",
+            target.get_color_attachment(),
+            depth,
+        );
         let span = recorder.pass_span(&mut pass, "rain_splash");
         draw_within(&mut pass, view.viewport);
         encode_splash_draw(&mut pass, &splashes.gpu, view_gpu, view.target_format, msaa.samples());
@@ -202,22 +199,12 @@ pub(super) fn splash(
     let Some(mask) = mask.filter(|_| *msaa == Msaa::Off) else {
         return;
     };
-    let mut pass = ctx.command_encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("rain_mask_splash"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &mask.texture_view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
-    });
+    let mut pass = over_scene(
+        ctx.command_encoder(),
+        "rain_mask_splash",
+        cleared(&mask.texture_view),
+        depth,
+    );
     if let Some(view_gpu) = view_gpu {
         draw_within(&mut pass, view.viewport);
         encode_splash_coverage(&mut pass, &splashes.gpu, view_gpu, msaa.samples());

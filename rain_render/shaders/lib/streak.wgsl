@@ -29,3 +29,33 @@ fn rain_contrast(opacity: f32, gain: f32) -> f32 {
 fn rain_strip(d: f32, width: f32) -> f32 {
     return clamp(0.5 + 0.5 * width - abs(d), 0.0, 1.0);
 }
+
+// Corner of a quad of two triangles (0 1 2, 2 1 3) that a vertex is: -1 or 1 along both axes.
+fn rain_quad_corner(vertex: u32) -> vec2<f32> {
+    let i = vertex % 6u;
+    let corner = select(i, select(5u - i, 3u, i == 5u), i > 2u);
+    return vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
+}
+
+// A corner of the quad that shows a streak, px.
+struct StreakCorner {
+    pixel: vec2<f32>,
+    // Across and along the streak, from its middle.
+    local: vec2<f32>,
+    // Width and length of what is shown.
+    size: vec2<f32>,
+    // Share of the way from head to tail.
+    along: f32,
+}
+
+// The quad of a streak from `ends.xy` to `ends.zw`, half a pixel larger on each side: the pixel's own footprint.
+fn rain_streak_corner(ends: vec4<f32>, half_width: f32, corner: vec2<f32>) -> StreakCorner {
+    let path = ends.zw - ends.xy;
+    let travelled = length(path);
+    let along = select(vec2<f32>(0.0, 1.0), path / max(travelled, 1e-6), travelled > 1e-4);
+    let width = 2.0 * half_width;
+    let span = max(1.0, travelled + width * f32(width > 1.0));
+    let local = corner * (0.5 * vec2<f32>(width, span) + 0.5);
+    let pixel = 0.5 * (ends.xy + ends.zw) + vec2<f32>(-along.y, along.x) * local.x + along * local.y;
+    return StreakCorner(pixel, local, vec2<f32>(width, span), clamp(0.5 + local.y / span, 0.0, 1.0));
+}

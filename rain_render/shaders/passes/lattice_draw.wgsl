@@ -31,13 +31,9 @@ fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
 fn vertex(@builtin(vertex_index) vertex_index: u32) -> CardVertex {
     let index = vertex_index / 6u;
     let card = cards[index];
-    // Two triangles: 0 1 2, 2 1 3.
-    let i = vertex_index % 6u;
-    let corner = select(i, select(5u - i, 3u, i == 5u), i > 2u);
-    let side = f32(corner & 1u) * 2.0 - 1.0;
-    let end = f32(corner >> 1u) * 2.0 - 1.0;
+    let corner = rain_quad_corner(vertex_index);
     let right = vec3<f32>(card.facing.y, 0.0, -card.facing.x);
-    let point = card.centre.xyz + (right * side + vec3<f32>(0.0, end, 0.0)) * card.centre.w;
+    let point = card.centre.xyz + (right * corner.x + vec3<f32>(0.0, corner.y, 0.0)) * card.centre.w;
     let sight = normalize(card.centre.xyz);
     let behind = vec3<f32>(-sight.x, max(0.2, -sight.y), -sight.z);
     let theta = acos(clamp(dot(sight, view.sun_direction.xyz), -1.0, 1.0));

@@ -23,28 +23,11 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> StreakVertex {
         out.position = vec4<f32>(0.0, 0.0, -1.0, 1.0);
         return out;
     }
-    // Two triangles: 0 1 2, 2 1 3.
-    let i = vertex_index % 6u;
-    let corner = select(i, select(5u - i, 3u, i == 5u), i > 2u);
-    let side = f32(corner & 1u) * 2.0 - 1.0;
-    let end = f32(corner >> 1u) * 2.0 - 1.0;
-
-    let a = streak.ends.xy;
-    let b = streak.ends.zw;
-    let path = b - a;
-    let travelled = length(path);
-    let along = select(vec2<f32>(0.0, 1.0), path / max(travelled, 1e-6), travelled > 1e-4);
-    let across = vec2<f32>(-along.y, along.x);
-    let width = 2.0 * streak.shape.z;
-    let span = max(1.0, travelled + width * f32(width > 1.0));
-    // Half a pixel more on each side: the pixel's own footprint.
-    let local = vec2<f32>(side * (0.5 * width + 0.5), end * (0.5 * span + 0.5));
-    let pixel = 0.5 * (a + b) + across * local.x + along * local.y;
-    let t = clamp(0.5 + local.y / span, 0.0, 1.0);
-    let ndc = (pixel / view.viewport - 0.5) * vec2<f32>(2.0, -2.0);
-    out.position = vec4<f32>(ndc, mix(streak.shape.x, streak.shape.y, t), 1.0);
-    out.local = local;
-    out.size = vec2<f32>(width, span);
+    let quad = rain_streak_corner(streak.ends, streak.shape.z, rain_quad_corner(vertex_index));
+    let ndc = (quad.pixel / view.viewport - 0.5) * vec2<f32>(2.0, -2.0);
+    out.position = vec4<f32>(ndc, mix(streak.shape.x, streak.shape.y, quad.along), 1.0);
+    out.local = quad.local;
+    out.size = quad.size;
     out.light = vec4<f32>(streak.light.rgb, streak.shape.w);
     out.coverage = streak.light.w;
     return out;

@@ -20,26 +20,15 @@ struct SplashVertex {
 fn vertex(@builtin(vertex_index) vertex_index: u32) -> SplashVertex {
     var out: SplashVertex;
     let part = parts[vertex_index / 6u];
-    // Two triangles: 0 1 2, 2 1 3.
-    let i = vertex_index % 6u;
-    let corner = select(i, select(5u - i, 3u, i == 5u), i > 2u);
-    let side = f32(corner & 1u) * 2.0 - 1.0;
-    let end = f32(corner >> 1u) * 2.0 - 1.0;
+    let corner = rain_quad_corner(vertex_index);
     var pixel: vec2<f32>;
     var depth = part.shape.x;
     if (part.form.x < 0.5) {
-        let a = part.ends.xy;
-        let b = part.ends.zw;
-        let path = b - a;
-        let travelled = length(path);
-        let along = select(vec2<f32>(0.0, 1.0), path / max(travelled, 1e-6), travelled > 1e-4);
-        let across = vec2<f32>(-along.y, along.x);
-        let width = 2.0 * part.shape.z;
-        let span = max(1.0, travelled + width * f32(width > 1.0));
-        out.local = vec2<f32>(side * (0.5 * width + 0.5), end * (0.5 * span + 0.5));
-        out.size = vec2<f32>(width, span);
-        pixel = 0.5 * (a + b) + across * out.local.x + along * out.local.y;
-        depth = mix(part.shape.x, part.shape.y, clamp(0.5 + out.local.y / span, 0.0, 1.0));
+        let quad = rain_streak_corner(part.ends, part.shape.z, corner);
+        pixel = quad.pixel;
+        out.local = quad.local;
+        out.size = quad.size;
+        depth = mix(part.shape.x, part.shape.y, quad.along);
     } else {
         let up = part.ends.zw;
         let across = vec2<f32>(-up.y, up.x);
@@ -47,7 +36,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> SplashVertex {
         let minor = part.form.y;
         let top = max(RAIN_CROWN_JETS * part.shape.z + minor, 0.5) + 0.5;
         let foot = -max(minor, 0.5) - 0.5;
-        out.local = vec2<f32>(side * (radius + 0.5), select(foot, top, end > 0.0));
+        out.local = vec2<f32>(corner.x * (radius + 0.5), select(foot, top, corner.y > 0.0));
         out.size = vec2<f32>(radius, part.shape.z);
         pixel = part.ends.xy + across * out.local.x + up * out.local.y;
     }

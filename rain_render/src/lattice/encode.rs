@@ -1,7 +1,7 @@
 //! Commands of the pass.
 
-use super::prepare::{DrawKey, LatticeGpu, LatticeViewGpu};
-use crate::rainfall::COVERAGE_FORMAT;
+use super::prepare::{LatticeGpu, LatticeViewGpu};
+use crate::overlay::OverlayKey;
 
 /// Draws the cards over a target of `format` with `samples` samples.
 pub fn encode_lattice(
@@ -11,16 +11,16 @@ pub fn encode_lattice(
     format: wgpu::TextureFormat,
     samples: u32,
 ) {
-    encode(pass, gpu, view, (format, samples, false, view.soft));
+    encode(pass, gpu, view, OverlayKey::colour(format, samples));
 }
 
-/// Draws the share of pixels that streaks cover into a [`COVERAGE_FORMAT`] target.
+/// Draws the share of pixels that streaks cover into a [`crate::rainfall::COVERAGE_FORMAT`] target.
 pub fn encode_lattice_coverage(pass: &mut wgpu::RenderPass, gpu: &LatticeGpu, view: &LatticeViewGpu, samples: u32) {
-    encode(pass, gpu, view, (COVERAGE_FORMAT, samples, true, view.soft));
+    encode(pass, gpu, view, OverlayKey::coverage(samples));
 }
 
-fn encode(pass: &mut wgpu::RenderPass, gpu: &LatticeGpu, view: &LatticeViewGpu, key: DrawKey) {
-    let (Some(group), Some(pipeline)) = (&view.group, gpu.pipelines.get(&key)) else {
+fn encode(pass: &mut wgpu::RenderPass, gpu: &LatticeGpu, view: &LatticeViewGpu, key: OverlayKey) {
+    let (Some(group), Some(pipeline)) = (&view.group, gpu.draw.get(key.reading_depth(view.soft))) else {
         return;
     };
     pass.set_pipeline(pipeline);

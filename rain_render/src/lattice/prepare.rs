@@ -1,26 +1,18 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
-use std::collections::HashMap;
-
 use rain_core::rainfall::Card;
 
 use super::params::LatticeInput;
-use crate::bindings::{one_texel, storage_entry, texture_entry, uniform_entry};
-use crate::compose;
+use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::gpu_types::LatticeParams;
-use crate::rainfall::{COVERAGE_FORMAT, DEPTH_FORMAT, RainfallTextures};
+use crate::overlay::{Overlay, OverlayKey};
+use crate::rainfall::{DEPTH_FORMAT, RainfallTextures};
 use crate::streak_textures::StreakArray;
-
-/// What pipelines differ by: target, samples, coverage instead of colour, the scene's depth read instead of tested.
-pub(super) type DrawKey = (wgpu::TextureFormat, u32, bool, bool);
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
 pub struct LatticeGpu {
-    layout: wgpu::BindGroupLayout,
-    pipeline_layout: wgpu::PipelineLayout,
-    shader: wgpu::ShaderModule,
-    pub(super) pipelines: HashMap<DrawKey, wgpu::RenderPipeline>,
+    pub(super) draw: Overlay,
     no_depth: wgpu::TextureView,
     no_environment: wgpu::TextureView,
     streak_sampler: wgpu::Sampler,
@@ -35,15 +27,11 @@ impl LatticeGpu {
         let (vertex, fragment) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT);
         let depth = wgpu::TextureSampleType::Depth;
         let colour = wgpu::TextureSampleType::Float { filterable: true };
-        let sampler_entry = |binding, visibility| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility,
-            ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            count: None,
-        };
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("rain lattice"),
-            entries: &[
+        let draw = Overlay::new(
+            device,
+            "rain lattice",
+            "lattice_draw",
+            &[
                 uniform_entry(0, both, size_of::<LatticeParams>()),
                 storage_entry(1, both, true),
                 storage_entry(2, fragment, true),
@@ -54,32 +42,13 @@ impl LatticeGpu {
                 texture_entry(7, vertex, colour, wgpu::TextureViewDimension::Cube),
                 sampler_entry(8, vertex),
             ],
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain lattice"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let sampler = |label, address| {
-            device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some(label),
-                address_mode_u: address,
-                address_mode_v: address,
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                ..Default::default()
-            })
-        };
+        );
         Self {
-            layout,
-            pipeline_layout,
-            shader: compose::shader(device, "lattice_draw"),
-            pipelines: HashMap::new(),
+            draw,
             no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
-            streak_sampler: sampler("rain streak textures", wgpu::AddressMode::Repeat),
-            environment_sampler: sampler("rain environment", wgpu::AddressMode::ClampToEdge),
+            streak_sampler: linear_sampler(device, "rain streak textures", wgpu::AddressMode::Repeat),
+            environment_sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
         }
     }
 
@@ -92,68 +61,14 @@ impl LatticeGpu {
         coverage: bool,
     ) {
         for soft in [false, true] {
-            let mut keys = vec![(format, samples, false, soft)];
+            // Half of a cell may lie before a wall that its middle is behind.
+            let colour = OverlayKey::colour(format, samples).reading_depth(soft);
+            self.draw.prepare(device, colour);
             if coverage {
-                keys.push((COVERAGE_FORMAT, samples, true, soft));
-            }
-            for key in keys {
-                if !self.pipelines.contains_key(&key) {
-                    let pipeline = self.pipeline(device, key);
-                    self.pipelines.insert(key, pipeline);
-                }
+                self.draw
+                    .prepare(device, OverlayKey::coverage(samples).reading_depth(soft));
             }
         }
-    }
-
-    fn pipeline(&self, device: &wgpu::Device, (format, samples, coverage, soft): DrawKey) -> wgpu::RenderPipeline {
-        let over = |src_factor, dst_factor| wgpu::BlendComponent {
-            src_factor,
-            dst_factor,
-            operation: wgpu::BlendOperation::Add,
-        };
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("rain lattice"),
-            layout: Some(&self.pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &self.shader,
-                entry_point: Some("vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(false),
-                // Half of a cell may lie before a wall that its middle is behind.
-                depth_compare: Some(if soft {
-                    wgpu::CompareFunction::Always
-                } else {
-                    wgpu::CompareFunction::GreaterEqual
-                }),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState {
-                count: samples,
-                ..Default::default()
-            },
-            fragment: Some(wgpu::FragmentState {
-                module: &self.shader,
-                entry_point: Some(if coverage { "coverage" } else { "colour" }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format,
-                    blend: Some(wgpu::BlendState {
-                        color: over(wgpu::BlendFactor::One, wgpu::BlendFactor::OneMinusSrcAlpha),
-                        // The target's own alpha stays what the scene made it.
-                        alpha: over(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One),
-                    }),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
     }
 }
 
@@ -251,7 +166,7 @@ impl LatticeViewGpu {
             .collect();
         self.group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain lattice"),
-            layout: &gpu.layout,
+            layout: &gpu.draw.layout,
             entries: &entries,
         }));
     }

@@ -1,6 +1,7 @@
 //! Commands of the pass.
 
-use super::prepare::{COVERAGE_FORMAT, RainfallGpu, RainfallViewGpu};
+use super::prepare::{RainfallGpu, RainfallViewGpu};
+use crate::overlay::OverlayKey;
 
 /// Places, covers and projects this frame's drops.
 pub fn encode_project(pass: &mut wgpu::ComputePass, gpu: &RainfallGpu, view: &RainfallViewGpu) {
@@ -18,21 +19,16 @@ pub fn encode_draw(
     format: wgpu::TextureFormat,
     samples: u32,
 ) {
-    encode(pass, gpu, view, (format, samples, false));
+    encode(pass, gpu, view, OverlayKey::colour(format, samples));
 }
 
-/// Draws the streaks' coverage into a [`COVERAGE_FORMAT`] target.
+/// Draws the streaks' coverage into a [`super::COVERAGE_FORMAT`] target.
 pub fn encode_coverage(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, samples: u32) {
-    encode(pass, gpu, view, (COVERAGE_FORMAT, samples, true));
+    encode(pass, gpu, view, OverlayKey::coverage(samples));
 }
 
-fn encode(
-    pass: &mut wgpu::RenderPass,
-    gpu: &RainfallGpu,
-    view: &RainfallViewGpu,
-    key: (wgpu::TextureFormat, u32, bool),
-) {
-    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(&key)) else {
+fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, key: OverlayKey) {
+    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key)) else {
         return;
     };
     pass.set_pipeline(pipeline);

@@ -1,10 +1,11 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
-use std::collections::HashMap;
-
-use crate::bindings::{compute_pipeline, one_texel, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{
+    compute_pipeline, linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry,
+};
 use crate::compose;
 use crate::gpu_types::{RainfallView, Streak};
+use crate::overlay::{Overlay, OverlayKey};
 use crate::rainfall::RainfallInput;
 
 /// Format of the coverage mask: blendable everywhere.
@@ -13,18 +14,12 @@ pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// Format of the depth the rain is tested against.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// What draw pipelines differ by.
-type DrawKey = (wgpu::TextureFormat, u32, bool);
-
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
 pub struct RainfallGpu {
     pub(super) project_layout: wgpu::BindGroupLayout,
     pub(super) project: wgpu::ComputePipeline,
-    pub(super) draw_layout: wgpu::BindGroupLayout,
-    draw_pipeline_layout: wgpu::PipelineLayout,
-    draw_shader: wgpu::ShaderModule,
-    pub(super) draw: HashMap<DrawKey, wgpu::RenderPipeline>,
+    pub(super) draw: Overlay,
     no_depth: wgpu::TextureView,
     no_environment: wgpu::TextureView,
     sampler: wgpu::Sampler,
@@ -72,46 +67,29 @@ impl RainfallGpu {
                     wgpu::TextureSampleType::Float { filterable: true },
                     wgpu::TextureViewDimension::Cube,
                 ),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 5,
-                    visibility: compute,
-                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    count: None,
-                },
+                sampler_entry(5, compute),
             ],
         });
         let module = compose::shader(device, "rainfall_project");
         let project = compute_pipeline(device, "rain rainfall project", &module, "project", &[&project_layout]);
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("rain rainfall draw"),
-            entries: &[
+        let draw = Overlay::new(
+            device,
+            "rain rainfall draw",
+            "rainfall_draw",
+            &[
                 uniform_entry(0, raster, size_of::<RainfallView>()),
                 storage_entry(1, wgpu::ShaderStages::VERTEX, true),
                 texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
             ],
-        });
-        let draw_pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain rainfall draw"),
-            bind_group_layouts: &[Some(&draw_layout)],
-            immediate_size: 0,
-        });
+        );
         Self {
             project_layout,
             project,
-            draw_layout,
-            draw_pipeline_layout,
-            draw_shader: compose::shader(device, "rainfall_draw"),
-            draw: HashMap::new(),
+            draw,
             no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
-            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("rain environment"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                ..Default::default()
-            }),
+            sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
         }
     }
 
@@ -123,66 +101,10 @@ impl RainfallGpu {
         samples: u32,
         coverage: bool,
     ) {
-        let mut keys = vec![(format, samples, false)];
+        self.draw.prepare(device, OverlayKey::colour(format, samples));
         if coverage {
-            keys.push((COVERAGE_FORMAT, samples, true));
+            self.draw.prepare(device, OverlayKey::coverage(samples));
         }
-        for key in keys {
-            if !self.draw.contains_key(&key) {
-                let pipeline = self.draw_pipeline(device, key);
-                self.draw.insert(key, pipeline);
-            }
-        }
-    }
-
-    fn draw_pipeline(&self, device: &wgpu::Device, (format, samples, coverage): DrawKey) -> wgpu::RenderPipeline {
-        let over = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
-            operation: wgpu::BlendOperation::Add,
-        };
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("rain rainfall draw"),
-            layout: Some(&self.draw_pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &self.draw_shader,
-                entry_point: Some("vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(false),
-                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState {
-                count: samples,
-                ..Default::default()
-            },
-            fragment: Some(wgpu::FragmentState {
-                module: &self.draw_shader,
-                entry_point: Some(if coverage { "coverage" } else { "colour" }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format,
-                    blend: Some(wgpu::BlendState {
-                        color: over,
-                        // The target's own alpha stays what the scene made it.
-                        alpha: wgpu::BlendComponent {
-                            src_factor: wgpu::BlendFactor::Zero,
-                            dst_factor: wgpu::BlendFactor::One,
-                            operation: wgpu::BlendOperation::Add,
-                        },
-                    }),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
     }
 }
 
@@ -265,7 +187,7 @@ impl RainfallViewGpu {
         }));
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain rainfall draw"),
-            layout: &gpu.draw_layout,
+            layout: &gpu.draw.layout,
             entries: &[
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, self.streaks.as_entire_binding()),

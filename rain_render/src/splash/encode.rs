@@ -1,7 +1,7 @@
 //! Commands of the pass.
 
 use super::prepare::{SplashGpu, SplashViewGpu};
-use crate::rainfall::COVERAGE_FORMAT;
+use crate::overlay::OverlayKey;
 
 /// Makes this frame's crowns and thrown drops.
 pub fn encode_splash_make(pass: &mut wgpu::ComputePass, gpu: &SplashGpu, view: &SplashViewGpu) {
@@ -23,16 +23,16 @@ pub fn encode_splash_draw(
     format: wgpu::TextureFormat,
     samples: u32,
 ) {
-    encode(pass, gpu, view, (format, samples, false));
+    encode(pass, gpu, view, OverlayKey::colour(format, samples));
 }
 
-/// Draws their coverage into a [`COVERAGE_FORMAT`] target.
+/// Draws their coverage into a [`crate::rainfall::COVERAGE_FORMAT`] target.
 pub fn encode_splash_coverage(pass: &mut wgpu::RenderPass, gpu: &SplashGpu, view: &SplashViewGpu, samples: u32) {
-    encode(pass, gpu, view, (COVERAGE_FORMAT, samples, true));
+    encode(pass, gpu, view, OverlayKey::coverage(samples));
 }
 
-fn encode(pass: &mut wgpu::RenderPass, gpu: &SplashGpu, view: &SplashViewGpu, key: (wgpu::TextureFormat, u32, bool)) {
-    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(&key)) else {
+fn encode(pass: &mut wgpu::RenderPass, gpu: &SplashGpu, view: &SplashViewGpu, key: OverlayKey) {
+    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key)) else {
         return;
     };
     pass.set_pipeline(pipeline);

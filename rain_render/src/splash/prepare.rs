@@ -1,16 +1,14 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
-use std::collections::HashMap;
-
-use crate::bindings::{compute_pipeline, one_texel, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{
+    compute_pipeline, linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry,
+};
 use crate::compose;
 use crate::gpu_types::{SplashDraw, SplashFind, SplashPart, SplashView};
-use crate::rainfall::{COVERAGE_FORMAT, DEPTH_FORMAT};
+use crate::overlay::{Overlay, OverlayKey};
+use crate::rainfall::DEPTH_FORMAT;
 
 use super::SplashInput;
-
-/// What draw pipelines differ by.
-type DrawKey = (wgpu::TextureFormat, u32, bool);
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
@@ -19,10 +17,7 @@ pub struct SplashGpu {
     pub(super) find: wgpu::ComputePipeline,
     pub(super) add: wgpu::ComputePipeline,
     pub(super) sort: wgpu::ComputePipeline,
-    draw_layout: wgpu::BindGroupLayout,
-    draw_pipeline_layout: wgpu::PipelineLayout,
-    draw_shader: wgpu::ShaderModule,
-    pub(super) draw: HashMap<DrawKey, wgpu::RenderPipeline>,
+    pub(super) draw: Overlay,
     no_depth: wgpu::TextureView,
     no_environment: wgpu::TextureView,
     no_levels: wgpu::TextureView,
@@ -79,12 +74,7 @@ impl SplashGpu {
                     wgpu::TextureSampleType::Float { filterable: true },
                     wgpu::TextureViewDimension::Cube,
                 ),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 6,
-                    visibility: compute,
-                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    count: None,
-                },
+                sampler_entry(6, compute),
                 texture_entry(
                     7,
                     compute,
@@ -98,38 +88,26 @@ impl SplashGpu {
         let pipeline = |entry: &str| compute_pipeline(device, "rain splash make", &module, entry, &[&make_layout]);
         let (find, add, sort) = (pipeline("find"), pipeline("add"), pipeline("sort"));
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("rain splash draw"),
-            entries: &[
+        let draw = Overlay::new(
+            device,
+            "rain splash draw",
+            "splash_draw",
+            &[
                 uniform_entry(0, raster, size_of::<SplashView>()),
                 storage_entry(1, wgpu::ShaderStages::VERTEX, true),
                 texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
             ],
-        });
-        let draw_pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain splash draw"),
-            bind_group_layouts: &[Some(&draw_layout)],
-            immediate_size: 0,
-        });
+        );
         Self {
             make_layout,
             find,
             add,
             sort,
-            draw_layout,
-            draw_pipeline_layout,
-            draw_shader: compose::shader(device, "splash_draw"),
-            draw: HashMap::new(),
+            draw,
             no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
             no_levels: one_texel(device, "rain no levels", wgpu::TextureFormat::R32Float, 1),
-            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("rain environment"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                ..Default::default()
-            }),
+            sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
         }
     }
 
@@ -141,66 +119,10 @@ impl SplashGpu {
         samples: u32,
         coverage: bool,
     ) {
-        let mut keys = vec![(format, samples, false)];
+        self.draw.prepare(device, OverlayKey::colour(format, samples));
         if coverage {
-            keys.push((COVERAGE_FORMAT, samples, true));
+            self.draw.prepare(device, OverlayKey::coverage(samples));
         }
-        for key in keys {
-            if !self.draw.contains_key(&key) {
-                let pipeline = self.draw_pipeline(device, key);
-                self.draw.insert(key, pipeline);
-            }
-        }
-    }
-
-    fn draw_pipeline(&self, device: &wgpu::Device, (format, samples, coverage): DrawKey) -> wgpu::RenderPipeline {
-        let over = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
-            operation: wgpu::BlendOperation::Add,
-        };
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("rain splash draw"),
-            layout: Some(&self.draw_pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &self.draw_shader,
-                entry_point: Some("vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(false),
-                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState {
-                count: samples,
-                ..Default::default()
-            },
-            fragment: Some(wgpu::FragmentState {
-                module: &self.draw_shader,
-                entry_point: Some(if coverage { "coverage" } else { "colour" }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format,
-                    blend: Some(wgpu::BlendState {
-                        color: over,
-                        // The target's own alpha stays what the scene made it.
-                        alpha: wgpu::BlendComponent {
-                            src_factor: wgpu::BlendFactor::Zero,
-                            dst_factor: wgpu::BlendFactor::One,
-                            operation: wgpu::BlendOperation::Add,
-                        },
-                    }),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
     }
 }
 
@@ -289,7 +211,7 @@ impl SplashViewGpu {
         }));
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain splash draw"),
-            layout: &gpu.draw_layout,
+            layout: &gpu.draw.layout,
             entries: &[
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, self.parts.as_entire_binding()),

@@ -1,0 +1,138 @@
+//! What is drawn over a finished scene: the pipelines of streaks, cards and splashes for every kind of target.
+
+use std::collections::HashMap;
+
+use crate::compose;
+use crate::rainfall::{COVERAGE_FORMAT, DEPTH_FORMAT};
+
+/// What pipelines differ by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct OverlayKey {
+    format: wgpu::TextureFormat,
+    samples: u32,
+    /// Coverage instead of colour.
+    coverage: bool,
+    /// The scene's depth is read in the shader, not tested.
+    reads_depth: bool,
+}
+
+impl OverlayKey {
+    /// Colour over a target.
+    pub fn colour(format: wgpu::TextureFormat, samples: u32) -> Self {
+        Self {
+            format,
+            samples,
+            coverage: false,
+            reads_depth: false,
+        }
+    }
+
+    /// Coverage into a [`COVERAGE_FORMAT`] target.
+    pub fn coverage(samples: u32) -> Self {
+        Self {
+            format: COVERAGE_FORMAT,
+            samples,
+            coverage: true,
+            reads_depth: false,
+        }
+    }
+
+    /// The same with the scene's depth read in the shader, or tested.
+    pub fn reading_depth(self, reads_depth: bool) -> Self {
+        Self { reads_depth, ..self }
+    }
+}
+
+/// Pipelines of one shader with the entry points `vertex`, `colour` and `coverage`, made when they are asked for.
+#[derive(Debug)]
+pub(crate) struct Overlay {
+    label: &'static str,
+    pub layout: wgpu::BindGroupLayout,
+    pipeline_layout: wgpu::PipelineLayout,
+    shader: wgpu::ShaderModule,
+    made: HashMap<OverlayKey, wgpu::RenderPipeline>,
+}
+
+impl Overlay {
+    /// Of the pass `pass`, with these bindings.
+    pub fn new(device: &wgpu::Device, label: &'static str, pass: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> Self {
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(label),
+            entries,
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        Self {
+            label,
+            layout,
+            pipeline_layout,
+            shader: compose::shader(device, pass),
+            made: HashMap::new(),
+        }
+    }
+
+    /// Makes sure that a pipeline exists.
+    pub fn prepare(&mut self, device: &wgpu::Device, key: OverlayKey) {
+        if !self.made.contains_key(&key) {
+            let pipeline = self.pipeline(device, key);
+            self.made.insert(key, pipeline);
+        }
+    }
+
+    pub fn get(&self, key: OverlayKey) -> Option<&wgpu::RenderPipeline> {
+        self.made.get(&key)
+    }
+
+    fn pipeline(&self, device: &wgpu::Device, key: OverlayKey) -> wgpu::RenderPipeline {
+        let add = |src_factor, dst_factor| wgpu::BlendComponent {
+            src_factor,
+            dst_factor,
+            operation: wgpu::BlendOperation::Add,
+        };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&self.pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &self.shader,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(if key.reads_depth {
+                    wgpu::CompareFunction::Always
+                } else {
+                    wgpu::CompareFunction::GreaterEqual
+                }),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: key.samples,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &self.shader,
+                entry_point: Some(if key.coverage { "coverage" } else { "colour" }),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: key.format,
+                    blend: Some(wgpu::BlendState {
+                        color: add(wgpu::BlendFactor::One, wgpu::BlendFactor::OneMinusSrcAlpha),
+                        // The target's own alpha stays what the scene made it.
+                        alpha: add(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One),
+                    }),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
