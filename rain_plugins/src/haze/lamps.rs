@@ -32,15 +32,16 @@ fn linear(colour: Color, lumen: f32) -> Vec3 {
     Vec3::new(c.red, c.green, c.blue) * (lumen / (4.0 * std::f32::consts::PI))
 }
 
-/// The `most` lamps with the most light at the eye, the strongest first. Those that others are about to replace are faded
+/// The `most` lamps with the most light at the eye, the strongest first, their light times `gain`. Those that others are about to replace are faded
 /// out, so that none vanishes at once.
 pub(super) fn strongest(
     points: &Query<(&PointLight, &GlobalTransform, &InheritedVisibility)>,
     spots: &Query<(&SpotLight, &GlobalTransform, &InheritedVisibility)>,
     eye: Vec3,
     most: usize,
+    gain: f32,
 ) -> Vec<GlowingLamp> {
-    if most == 0 {
+    if most == 0 || gain <= 0.0 {
         return Vec::new();
     }
     let points = points
@@ -72,7 +73,7 @@ pub(super) fn strongest(
     found
         .into_iter()
         .map(|(score, mut lamp)| {
-            lamp.intensity_cd *= (4.0 * (1.0 - next / score)).clamp(0.0, 1.0);
+            lamp.intensity_cd *= gain * (4.0 * (1.0 - next / score)).clamp(0.0, 1.0);
             lamp
         })
         .collect()

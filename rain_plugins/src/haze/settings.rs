@@ -24,6 +24,9 @@ pub struct HazeSettings {
     /// Lamps (point and spot lights) that glow, those with the most light at the eye first; 0: none. Domain: 0 to 16.
     /// Default: 16.
     pub lamps: u32,
+    /// Gain on the glow of lamps. Units: none. Domain: [0, 100]. Default: 1, physical: rain alone glows faintly, what one
+    /// remembers as a halo is mostly mist and the lens.
+    pub glow: f32,
     /// Fog as an artist sets it, in place of the rain's. Default: none.
     pub artist: Option<ArtistFog>,
 }
@@ -64,6 +67,7 @@ impl Default for HazeSettings {
             cloud_base_m: 1000.0,
             limit_m: 20_000.0,
             lamps: MAX_HAZE_LAMPS as u32,
+            glow: 1.0,
             artist: None,
         }
     }
@@ -80,6 +84,7 @@ impl HazeSettings {
         let furthest = f64::from(MAX_HAZE_LIMIT_M);
         in_range("limit_m", self.limit_m.into(), 10.0, furthest, "10 to 1e5 m")?;
         in_range("lamps", self.lamps.into(), 0.0, MAX_HAZE_LAMPS as f64, "0 to 16")?;
+        in_range("glow", self.glow.into(), 0.0, 100.0, "0 to 100")?;
         if let Some(fog) = self.artist {
             in_range("density_per_m", fog.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
             in_range("gain", fog.gain.into(), 0.0, 1e3, "0 to 1000")?;

@@ -266,7 +266,7 @@ fn aim_haze(
                 colour: fog.colour.map(|c| Vec3::new(c.red, c.green, c.blue)),
                 desaturation: fog.desaturation * frame.fade.share() as f32,
             }),
-            lamps: strongest(points, spots, eye, settings.lamps as usize),
+            lamps: strongest(points, spots, eye, settings.lamps as usize, settings.glow),
         });
     }
     if !any {

@@ -24,8 +24,9 @@ use super::record::{cleared, draw_within};
 use crate::haze::{HazeMask, HazeShot, HazeViewFrame};
 use crate::report::{PassName, RainReport};
 
-/// A glow of less than this (exposed) half a metre from its lamp is not drawn: a twentieth of an 8-bit step.
-const LEAST_GLOW: f32 = 2e-4;
+/// A lamp whose intensity times extinction (exposed) is less glows by less than the darkest 8-bit step (3e-4) half a metre
+/// from it, at most half of that over the distance and Q.
+const LEAST_GLOW: f32 = 6e-4;
 
 /// One camera that sees haze.
 #[derive(Component, Clone)]

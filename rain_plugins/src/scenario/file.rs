@@ -451,6 +451,8 @@ pub struct RainSettings {
     pub haze: bool,
     /// Height (Y) of the cloud that rain falls from; there is no haze above. Units: m. Domain: ±100 000. Default: 1000.
     pub cloud_base_m: f64,
+    /// Gain on the glow of lamps in the haze. Units: none. Domain: [0, 100]; 1 is physical. Default: 1.
+    pub glow: f64,
 }
 
 /// Where rings on water come from.
@@ -476,6 +478,7 @@ impl Default for RainSettings {
             splash_budget: 8_000,
             haze: true,
             cloud_base_m: 1000.0,
+            glow: 1.0,
             look: WetLook::Physical,
         }
     }

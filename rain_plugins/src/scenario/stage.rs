@@ -307,6 +307,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
         camera.insert(HazeSettings {
             enabled: scenario.rain.haze,
             cloud_base_m: scenario.rain.cloud_base_m as f32,
+            glow: scenario.rain.glow as f32,
             ..default()
         });
         if environment.reflection {

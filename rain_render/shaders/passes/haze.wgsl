@@ -123,6 +123,9 @@ fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(total, max(total - drawn, 0.0));
 }
 
+// Exposed radiance that nobody sees.
+const LEAST_GLOW: f32 = 1e-4;
+
 // Light of the lamps that all drops between `ends` send to the eye.
 fn glow(towards: vec3<f32>, ends: vec2<f32>, in: HazeVertex) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
@@ -139,6 +142,12 @@ fn glow(towards: vec3<f32>, ends: vec2<f32>, in: HazeVertex) -> vec3<f32> {
             let flat = max(length(lamp.place.xz), 0.5);
             let azimuth = azimuth_place(lamp.place.xyz);
             extinction = ground_depth(azimuth, flat) / flat;
+        }
+        // No line of sight gets more than half of I σ / h; less than a third of the darkest 8-bit step is left out.
+        let beside = max(length(cross(lamp.place.xyz, towards)), lamp.place.w);
+        let most = max(lamp.light.r, max(lamp.light.g, lamp.light.b));
+        if (0.5 * share * most * extinction < LEAST_GLOW * view.efficiency * beside) {
+            continue;
         }
         var light = 0.0;
         if (lamp.light.w < -0.99) {
