@@ -233,6 +233,55 @@ fn a_far_shower_is_a_curtain_of_its_depth_and_nothing_beside_it() {
     assert!((seen - (-middle).exp()).abs() < 0.01, "{seen} {}", (-middle).exp());
 }
 
+#[test]
+fn the_artists_fog_thickens_with_the_rain_and_loses_its_colour_as_it_sets_in() {
+    if !gpu::available() {
+        return;
+    }
+    let fog = ArtistFog {
+        density_per_m: 0.004,
+        gain: 3.0,
+        colour: Some(LinearRgba::rgb(0.2, 0.5, 1.0)),
+        desaturation: 1.0,
+        transition_s: 2.0,
+    };
+    let scene = |rate: f64| {
+        let mut test = scene(rate);
+        world::block(
+            test.world(),
+            "wall",
+            Vec3::new(-80.0, -10.0, -61.0),
+            Vec3::new(80.0, 80.0, -60.0),
+            [0.0; 3],
+        );
+        let mask = with_mask(&mut test);
+        test.look(Vec3::new(0.0, 12.0, 0.0), Vec3::new(0.0, 12.0, -10.0));
+        let camera = test.camera;
+        test.world().get_mut::<HazeSettings>(camera).expect("settings").artist = Some(fog);
+        test.world().get_mut::<RainView>(camera).expect("a view").streak_budget = Some(1);
+        (test, mask)
+    };
+    // Densities of 2, 5 and 10 mm/h: 0.15, 0.4 and 1 of the gain (table T3 of the source).
+    for (rate, amount) in [(2.0, 0.15), (5.0, 0.4), (10.0, 1.0)] {
+        let (mut test, mask) = scene(rate);
+        test.frames(10, FRAME);
+        let obscured = read(&mut test, &mask)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize];
+        let expected = 1.0 - (-0.004_f64 * (1.0 + 3.0 * amount) * 60.0).exp();
+        // A step of a half float, and half a pixel of the wall's distance.
+        assert!((obscured - expected).abs() < 1e-3, "{rate}: {obscured}, not {expected}");
+    }
+    let (mut test, _) = scene(10.0);
+    test.frames(6, FRAME);
+    let spread = |picture: &RgbImage| {
+        let [r, _, b] = picture.get_pixel(SIZE[0] / 2, SIZE[1] / 2).0.map(i32::from);
+        b - r
+    };
+    let early = spread(&test.picture());
+    test.frames(180, FRAME);
+    let late = spread(&test.picture());
+    assert!(early > 20 && late * 4 < early, "{early} at first, {late} after");
+}
+
 fn brightness(picture: &RgbImage, x: std::ops::Range<u32>, y: std::ops::Range<u32>) -> f64 {
     let mut sum = 0.0;
     let mut count = 0.0;
