@@ -43,7 +43,8 @@ fn rain_phase_integral(theta: f32) -> f32 {
 }
 
 // Glow of a lamp of 1 cd at `lamp` along the unit line `towards` from `from` to `to`, 1/m; `radius` is the lamp's,
-// `extinction` what the light loses on its way, 1/m. Error: 1e-4 of rain_core::haze::lamp_glow_per_m.
+// `extinction` what the light loses on its way, 1/m. Error: 1e-3 of
+// rain_core::haze::lamp_glow_per_m.
 fn rain_lamp_glow(lamp: vec3<f32>, towards: vec3<f32>, start: f32, end: f32, radius: f32, extinction: f32) -> f32 {
     if (end <= start) {
         return 0.0;

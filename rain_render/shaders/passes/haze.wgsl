@@ -79,7 +79,8 @@ fn azimuth_place(towards: vec3<f32>) -> f32 {
     return clamp(held / view.grid.y, 0.0, f32(RAIN_HAZE_AZIMUTHS) - 1.001);
 }
 
-// Optical depth along the ground at an azimuth up to a distance.
+// Optical depth along the ground at an azimuth up to a distance. Error: 0.01 of it as a mean over pixels; for one 0.027
+// of the extinction times the distance to the last rain.
 fn ground_depth(azimuth: f32, distance: f32) -> f32 {
     let knot = clamp(rain_haze_place(distance, view.grid.z), 0.0, f32(RAIN_HAZE_INTERVALS) - 0.001);
     let i = u32(knot);
@@ -94,7 +95,8 @@ fn ground_depth(azimuth: f32, distance: f32) -> f32 {
 // Intervals in which what is drawn is taken off the areas' rain.
 const DRAWN_INTERVALS: u32 = 6u;
 
-// Optical depth of the whole rain and of what is not drawn, along a line of sight from `ends.x` to `ends.y`.
+// Optical depth of the whole rain and of what is not drawn, along a line of sight from `ends.x` to `ends.y`. Error: 0.02 m
+// times the geometric extinction.
 fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
     let way = ends.y - ends.x;
     let flat = length(towards.xz);
