@@ -40,6 +40,7 @@ pub const LIBRARIES: &[Library] = library![
     "rut_lanes",
     "placed_water",
     "film_waves",
+    "beads",
     "artist_look",
     "slopes",
     "waves",

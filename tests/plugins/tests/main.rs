@@ -3,6 +3,7 @@
 mod areas;
 mod auto_paint;
 mod bad_meshes;
+mod beads;
 mod by_hand;
 mod device_loss;
 mod far_scene;
