@@ -24,12 +24,14 @@
 //! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
 //! | [`cover::CoverPlugin`] | what stops rain |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
+//! | [`haze::HazePlugin`] | haze of rain, far showers, glow of lamps |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
 //! | [`render_adapter::RainRenderPlugin`] | the passes |
 
 pub mod cover;
+pub mod haze;
 pub mod rainfall;
 pub mod render_adapter;
 pub mod report;
@@ -59,6 +61,7 @@ impl PluginGroup for RainPlugins {
             .add(render_adapter::RainRenderPlugin)
             .add(cover::CoverPlugin)
             .add(rainfall::RainfallPlugin)
+            .add(haze::HazePlugin)
             .add(splash::SplashPlugin)
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
@@ -92,6 +95,7 @@ impl Plugin for RainSchedulePlugin {
 /// What users type.
 pub mod prelude {
     pub use crate::cover::CoverSettings;
+    pub use crate::haze::{ArtistFog, DrawnTiers, HazeMask, HazePlugin, HazeSettings};
     pub use crate::rainfall::RainView;
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};

@@ -18,6 +18,8 @@ pub enum PassName {
     Waves,
     /// The mirrored view.
     Reflection,
+    /// Haze of rain.
+    Haze,
     /// Splashes of rain.
     Splash,
     /// Streaks near the eye.
@@ -36,6 +38,7 @@ impl PassName {
             Self::Ripples => "ripples",
             Self::Waves => "waves",
             Self::Reflection => "reflection",
+            Self::Haze => "haze",
             Self::Splash => "splash",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
@@ -64,6 +67,8 @@ pub enum SkipReason {
     NothingMoved,
     /// No camera carries a `RainView`, or it is inactive.
     NoView,
+    /// Too little to be seen.
+    Negligible,
     /// Turned off by a setting.
     Disabled,
     /// The view's projection or sample count is not supported by the pass.
@@ -84,6 +89,7 @@ impl SkipReason {
             Self::Indoors => "indoors",
             Self::NothingMoved => "nothing moved",
             Self::NoView => "no view",
+            Self::Negligible => "negligible",
             Self::Disabled => "disabled",
             Self::Unsupported => "unsupported view",
         }

@@ -519,3 +519,52 @@ struct SplashDraw {
     // Parts noted so far in this frame; 0 between frames.
     noted: atomic<u32>,
 }
+
+// A lamp that glows in the haze.
+struct HazeLamp {
+    // From the eye, m; w: radius, m.
+    place: vec4<f32>,
+    // Luminous intensity, exposed, cd; w: cosine of the outer half angle, -1 where it shines all around.
+    light: vec4<f32>,
+    // Where it shines; w: cosine of the inner half angle.
+    axis: vec4<f32>,
+}
+
+// A view of haze. Positions are relative to the eye.
+struct HazeView {
+    eye_from_clip: mat4x4<f32>,
+    clip_from_eye: mat4x4<f32>,
+    // Scale of the environment map; w: its highest level.
+    environment: vec4<f32>,
+    // Even light around, exposed.
+    ambient: vec4<f32>,
+    sun_direction: vec4<f32>,
+    sun: vec4<f32>,
+    // Where the view looks; w: near plane, m.
+    forward: vec4<f32>,
+    // Corner and size of the view in the target, px.
+    viewport: vec4<f32>,
+    // The artists' fog: colour, times the luminance around; w: how much of its colour it has lost.
+    fog: vec4<f32>,
+    // Extinction of the rain at the eye, or everywhere, 1/m.
+    extinction: f32,
+    // Extinction over cross-section, Q.
+    efficiency: f32,
+    // Base of the cloud over the eye, and the longest way, m.
+    cloud: f32,
+    limit: f32,
+    // The artists' fog, 1/m; below 0: the physical haze.
+    artist: f32,
+    // 1: the artists' fog has a colour of its own.
+    coloured: f32,
+    // 1: areas divide the rain.
+    uneven: f32,
+    lamps: u32,
+    // Areas' grid: first azimuth and step, rad; scale of its knots; knots of rates for each unit of ln.
+    grid: vec4<f32>,
+    // Metres of rain that what is drawn stands for, by distance.
+    drawn: array<vec4<f32>, 16>,
+    // ln of the extinction, 1/m, by rate.
+    rates: array<vec4<f32>, 16>,
+    lamp: array<HazeLamp, 16>,
+}

@@ -413,6 +413,42 @@ pub struct SplashDraw {
     pub noted: u32,
 }
 
+/// A lamp that glows in the haze.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct HazeLamp {
+    pub place: [f32; 4],
+    pub light: [f32; 4],
+    pub axis: [f32; 4],
+}
+
+/// A view of haze.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct HazeView {
+    pub eye_from_clip: [[f32; 4]; 4],
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub forward: [f32; 4],
+    pub viewport: [f32; 4],
+    pub fog: [f32; 4],
+    pub extinction: f32,
+    pub efficiency: f32,
+    pub cloud: f32,
+    pub limit: f32,
+    pub artist: f32,
+    pub coloured: f32,
+    pub uneven: f32,
+    pub lamps: u32,
+    pub grid: [f32; 4],
+    pub drawn: [[f32; 4]; 16],
+    pub rates: [[f32; 4]; 16],
+    pub lamp: [HazeLamp; 16],
+}
+
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
 pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
 
@@ -462,5 +498,8 @@ pub fn layouts() -> Vec<Layout> {
         layout!(SplashPart: ends, shape, light, form),
         layout!(SplashFind: part, id, number, pad_a, pad_b),
         layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
+        layout!(HazeLamp: place, light, axis),
+        layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward, viewport, fog,
+            extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, drawn, rates, lamp),
     ]
 }

@@ -8,6 +8,7 @@ mod bindings;
 pub mod compose;
 pub mod cover;
 pub mod gpu_types;
+pub mod haze;
 pub mod lattice;
 pub mod masks;
 mod overlay;

@@ -51,7 +51,7 @@ pub struct Beads {
 
 /// Slope of a cap at a share of its base's radius, down from the middle: x/√(1/sin²θ − x²), at most 1.6. Units: none.
 /// The share is held in [0, 1].
-/// Error: 1e-15.
+/// Error: 1e-14.
 #[must_use]
 pub fn bead_slope(share: f64) -> f64 {
     let x = clamped(share, 0.0, 1.0);

@@ -454,6 +454,12 @@ pub struct RainSettings {
     /// Crowns and thrown drops of splashes drawn, about; twice as many is the hard bound, 0 draws none. Domain:
     /// 0…1 000 000. Default: 8000.
     pub splash_budget: u32,
+    /// Haze of the rain, with far showers and the glow of lamps. Default: true.
+    pub haze: bool,
+    /// Height (Y) of the cloud that rain falls from; there is no haze above. Units: m. Domain: ±100 000. Default: 1000.
+    pub cloud_base_m: f64,
+    /// Gain on the glow of lamps in the haze. Units: none. Domain: [0, 100]; 1 is physical. Default: 1.
+    pub glow: f64,
 }
 
 /// Where rings on water come from.
@@ -477,6 +483,9 @@ impl Default for RainSettings {
             exposure_s: 1.0 / 60.0,
             rings: Rings::default(),
             splash_budget: 8_000,
+            haze: true,
+            cloud_base_m: 1000.0,
+            glow: 1.0,
             look: WetLook::Physical,
         }
     }

@@ -384,6 +384,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
         .map(|(name, record)| {
             let spans: &[&str] = match name.as_str() {
                 "splash" => &["rain_splash_make", "rain_splash"],
+                "haze" => &["rain_haze_areas", "rain_haze"],
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
                 "water_map" => &["rain_water_map"],
                 "ripples" => &["rain_ripples"],

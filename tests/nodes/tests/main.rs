@@ -8,6 +8,7 @@ mod far;
 mod field_parity;
 mod film_waves;
 mod hash_parity;
+mod haze;
 mod lattice;
 mod maps;
 mod optical_depth;

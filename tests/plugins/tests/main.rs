@@ -9,6 +9,7 @@ mod device_loss;
 mod far_scene;
 mod film_flow;
 mod groups;
+mod haze;
 mod large_scene;
 mod looks;
 mod materials;
