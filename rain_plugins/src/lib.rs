@@ -23,7 +23,7 @@
 //! |---|---|
 //! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
 //! | [`cover::CoverPlugin`] | what stops rain |
-//! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
+//! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
@@ -92,7 +92,7 @@ impl Plugin for RainSchedulePlugin {
 /// What users type.
 pub mod prelude {
     pub use crate::cover::CoverSettings;
-    pub use crate::rainfall::RainView;
+    pub use crate::rainfall::{CardSettings, RainView};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::splash::{SplashMask, SplashSettings};

@@ -32,6 +32,7 @@ pub const LIBRARIES: &[Library] = library![
     "cover",
     "streak",
     "drop_light",
+    "lamp_light",
     "surroundings",
     "wetness",
     "standing_water",

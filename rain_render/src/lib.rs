@@ -8,6 +8,7 @@ mod bindings;
 pub mod compose;
 pub mod cover;
 pub mod gpu_types;
+mod lamps;
 pub mod lattice;
 pub mod masks;
 mod overlay;

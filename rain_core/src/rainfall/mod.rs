@@ -50,8 +50,8 @@ pub use gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};
 pub use impacts::measured_energy_j_m2_mm;
 pub(crate) use impacts::turning;
 pub use lattice::{
-    Card, CardCounts, CardHit, Lamp, LatticeLevel, LatticePlan, LatticeSettings, LatticeSharing, LatticeView,
-    MAX_CARD_SAMPLES, MAX_LAMPS, pitch_weight,
+    Card, CardCounts, CardHit, Lamp, LatticeLevel, LatticePlan, LatticeRates, LatticeSettings, LatticeSharing,
+    LatticeView, MAX_CARD_SAMPLES, MAX_LAMPS, pitch_weight,
 };
 pub use local::{LocalRain, RateLadder};
 pub use oscillation::{

@@ -5,11 +5,13 @@
 //! | `extract.rs` | main world → render world, plain data |
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
+//! | `lattice.rs` | all three for cards and their streak textures |
 //! | `splash.rs` | all three for splashes |
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
+mod lattice;
 mod prepare;
 mod record;
 mod splash;
@@ -311,6 +313,8 @@ impl Plugin for RainRenderPlugin {
             .insert_resource(levels)
             .init_gpu_resource::<prepare::RainGpu>()
             .init_gpu_resource::<splash::SplashViews>()
+            .init_gpu_resource::<lattice::LatticeViews>()
+            .init_resource::<lattice::ExtractedStreaks>()
             .init_resource::<extract::ExtractedWaves>()
             .init_resource::<extract::ExtractedMap>()
             .add_systems(
@@ -320,12 +324,13 @@ impl Plugin for RainRenderPlugin {
                     extract::extract_waves,
                     extract::extract_map,
                     splash::extract_splashes,
+                    lattice::extract_cards,
                 ),
             )
             .add_systems(
                 Render,
                 (
-                    (splash::prepare_splashes, prepare::prepare_rain)
+                    (splash::prepare_splashes, lattice::prepare_cards, prepare::prepare_rain)
                         .chain()
                         .in_set(RenderSystems::PrepareBindGroups),
                     wave_levels::show_levels.in_set(RenderSystems::Cleanup),
@@ -333,7 +338,9 @@ impl Plugin for RainRenderPlugin {
             )
             .add_systems(
                 RenderGraph,
-                (record::water_map, record::water).chain().before(camera_driver),
+                (record::water_map, record::water, lattice::streak_textures)
+                    .chain()
+                    .before(camera_driver),
             )
             .add_systems(
                 Core3d,
@@ -350,7 +357,7 @@ impl Plugin for RainRenderPlugin {
                         .after(main_opaque_pass_3d)
                         .before(main_transmissive_pass_3d)
                         .before(main_transparent_pass_3d),
-                    (splash::splash, record::rainfall)
+                    (splash::splash, lattice::lattice, record::rainfall)
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),

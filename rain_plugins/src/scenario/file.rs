@@ -447,6 +447,8 @@ pub struct RainSettings {
     /// Crowns and thrown drops of splashes drawn, about; twice as many is the hard bound, 0 draws none. Domain:
     /// 0…1 000 000. Default: 8000.
     pub splash_budget: u32,
+    /// Whether rain beyond the single drops is drawn, as cards of many. Default: true.
+    pub cards: bool,
 }
 
 /// Where rings on water come from.
@@ -470,6 +472,7 @@ impl Default for RainSettings {
             exposure_s: 1.0 / 60.0,
             rings: Rings::default(),
             splash_budget: 8_000,
+            cards: true,
             look: WetLook::Physical,
         }
     }

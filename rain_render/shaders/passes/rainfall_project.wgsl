@@ -7,16 +7,20 @@
 @group(0) @binding(4) var environment: texture_cube<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
 
-fn drop_radiance(from_eye: vec3<f32>) -> vec3<f32> {
-    return rain_drop_shine(
+fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
+    var light = rain_drop_shine(
         environment,
         environment_sampler,
         view.environment,
         view.ambient,
         view.sun_direction.xyz,
         view.sun.rgb,
-        from_eye,
+        normalize(place),
     );
+    for (var i = 0u; i < view.lamps; i++) {
+        light += rain_lamp_radiance(view.lamp[i], place);
+    }
+    return light;
 }
 
 fn to_pixels(clip: vec4<f32>) -> vec2<f32> {
@@ -85,6 +89,6 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
         0.5 * width,
         weight * rain_contrast(opacity, view.contrast),
     );
-    out.light = vec4<f32>(drop_radiance(normalize(p)), weight * min(1.0, size / width));
+    out.light = vec4<f32>(drop_radiance(0.5 * (p + before)), weight * min(1.0, size / width));
     streaks[id.x] = out;
 }

@@ -2,9 +2,10 @@
 
 use glam::{Mat4, Vec2, Vec3};
 use rain_core::hash::pcg3d;
-use rain_core::rainfall::{CLASS_COUNT, Container, LEAD_CAP_M, LEAD_TIME_S, SizeClass};
+use rain_core::rainfall::{CLASS_COUNT, Container, LEAD_CAP_M, LEAD_TIME_S, Lamp, SizeClass};
 
 use crate::gpu_types::{CoverParams, RainfallClass, RainfallView};
+use crate::lamps;
 
 /// The light that drops show.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +58,8 @@ pub struct RainfallInput<'a> {
     pub shutter: Shutter,
     /// Surroundings.
     pub lighting: Lighting,
+    /// Lamps near the view; the first [`rain_core::rainfall::MAX_LAMPS`] count.
+    pub lamps: &'a [Lamp],
     /// Cover map relative to the eye.
     pub cover: CoverParams,
 }
@@ -79,6 +82,7 @@ impl RainfallInput<'_> {
             };
         }
         let lead = (self.eye_velocity_m_s * LEAD_TIME_S as f32).clamp_length_max(LEAD_CAP_M as f32);
+        let (lamp, lamps) = lamps::slots(self.lamps);
         RainfallView {
             clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
             clip_from_eye_before: self.clip_from_eye_before.to_cols_array_2d(),
@@ -97,11 +101,12 @@ impl RainfallInput<'_> {
             kappa: self.shutter.kappa,
             soft: self.shutter.soft_m,
             drops: self.container.records.len() as u32,
-            pad_a: 0,
+            lamps,
             pad_b: 0,
             pad_c: 0,
             cover: self.cover,
             classes,
+            lamp,
         }
     }
 }

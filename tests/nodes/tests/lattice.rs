@@ -75,6 +75,7 @@ fn cards(textures: &StreakTextureSettings, intensity: f64) -> Vec<Card> {
         &LatticeView {
             volume: &volume,
             spectrum: &Spectrum::new(Distribution::MarshallPalmer, intensity).expect("a rate"),
+            local: None,
             motion: &FieldMotion::default().after(50.0),
             kappa: 1.0,
             lamps: &[],

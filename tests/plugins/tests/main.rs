@@ -4,6 +4,7 @@ mod areas;
 mod auto_paint;
 mod bad_meshes;
 mod by_hand;
+mod cards;
 mod device_loss;
 mod far_scene;
 mod film_flow;
