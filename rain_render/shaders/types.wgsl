@@ -64,6 +64,8 @@ struct RainfallView {
     sun: vec4<f32>,
     // How far the container reaches ahead of the eye, m; w unused.
     lead: vec4<f32>,
+    // A drop's size over its own by distance d: x + y d + z d2; w: d for a metre.
+    size: vec4<f32>,
     // Width and height, px.
     viewport: vec2<f32>,
     // Focal length, px.

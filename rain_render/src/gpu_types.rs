@@ -49,6 +49,7 @@ pub struct RainfallView {
     pub sun_direction: [f32; 4],
     pub sun: [f32; 4],
     pub lead: [f32; 4],
+    pub size: [f32; 4],
     pub viewport: [f32; 2],
     pub focal: f32,
     pub near: f32,
@@ -431,7 +432,7 @@ pub fn layouts() -> Vec<Layout> {
     vec![
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
-        layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead,
+        layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead, size,
             viewport, focal, near, exposure, contrast, kappa, soft, drops, lamps, pad_b, pad_c, cover, classes, lamp),
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),

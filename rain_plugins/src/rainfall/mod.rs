@@ -12,7 +12,9 @@ pub(crate) use cards::{CardShot, LatticeState};
 pub use lamps::ViewLamps;
 pub(crate) use lead::leading_view;
 pub use motion::ViewMotion;
-pub use rain_core::rainfall::{FollowSettings, FollowShape, LatticeLevel, LatticeSettings, StreakTextureSettings};
+pub use rain_core::rainfall::{
+    DetailLaw, FollowSettings, FollowShape, LatticeLevel, LatticeSettings, StreakTextureSettings,
+};
 pub use settings::CardSettings;
 pub use view::{MAX_CONTRAST, MAX_STREAK_BUDGET, RainView, RainViewFrame, RainfallPlugin};
 pub(crate) use view::{SoftwareAdapter, fill_containers, view_volume};

@@ -21,3 +21,24 @@ fn rain_lamp_radiance(lamp: LampParams, point: vec3<f32>) -> vec3<f32> {
     let falloff = left * left / (square + lamp.place.w * lamp.place.w);
     return lamp.intensity.rgb * (falloff * cone * cone * shares);
 }
+
+// A bound on the greatest component of `rain_lamp_radiance` within `reach` of a point. Error: never below it but for
+// rounding.
+fn rain_lamp_bound(lamp: LampParams, point: vec3<f32>, reach: f32) -> f32 {
+    let way = point - lamp.place.xyz;
+    let distance = length(way);
+    let nearest = max(distance - reach, 0.0);
+    if (nearest * nearest * lamp.limits.x >= 1.0) {
+        return 0.0;
+    }
+    if (nearest > 0.0 && lamp.direction.w > -1.0) {
+        // The ball seen from the lamp is a cone.
+        let half = asin(min(reach / distance, 1.0));
+        let off = acos(clamp(dot(way, lamp.direction.xyz) / distance, -1.0, 1.0));
+        if (off - half > acos(lamp.direction.w)) {
+            return 0.0;
+        }
+    }
+    let intensity = max(lamp.intensity.r, max(lamp.intensity.g, lamp.intensity.b));
+    return 1.07 * intensity / (nearest * nearest + lamp.place.w * lamp.place.w);
+}

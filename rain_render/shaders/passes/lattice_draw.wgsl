@@ -11,6 +11,9 @@
 @group(0) @binding(7) var environment: texture_cube<f32>;
 @group(0) @binding(8) var environment_sampler: sampler;
 
+// Drops that a lamp makes no brighter than this, exposed, are not asked about it.
+const LEAST_LIGHT: f32 = 0.000244;
+
 struct CardVertex {
     @builtin(position) position: vec4<f32>,
     @location(0) point: vec3<f32>,
@@ -20,6 +23,8 @@ struct CardVertex {
     @location(3) @interpolate(flat) light: vec3<f32>,
     // Distance along the view's axis, m.
     @location(4) axial: f32,
+    // A bit for each lamp that may show on it.
+    @location(5) @interpolate(flat) lamps: u32,
 }
 
 fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
@@ -27,6 +32,17 @@ fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
     let d = vec3<f32>(direction.x, direction.y, -direction.z);
     let level = blur * view.environment.w;
     return textureSampleLevel(environment, environment_sampler, d, level).rgb * view.environment.rgb + view.ambient.rgb;
+}
+
+// A bit for each lamp whose light somewhere in the card's cell may be seen.
+fn lamps_on(card: Card) -> u32 {
+    var found = 0u;
+    for (var i = 0u; i < view.lamps; i++) {
+        if (rain_lamp_bound(view.lamp[i], card.centre.xyz, 1.7320508 * card.centre.w) > LEAST_LIGHT) {
+            found |= 1u << i;
+        }
+    }
+    return found;
 }
 
 @vertex
@@ -49,6 +65,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> CardVertex {
     out.point = point;
     out.place = rain_card_place(card, point);
     out.card = index;
+    out.lamps = lamps_on(card);
     out.light = rain_drop_radiance(surroundings(sight, 0.55), surroundings(behind, 0.9), view.sun.rgb, theta);
     return out;
 }
@@ -107,8 +124,8 @@ fn colour(in: CardVertex) -> @location(0) vec4<f32> {
         return vec4<f32>(0.0);
     }
     var light = in.light;
-    for (var i = 0u; i < view.lamps; i++) {
-        light += rain_lamp_radiance(view.lamp[i], in.point);
+    for (var left = in.lamps; left != 0u; left &= left - 1u) {
+        light += rain_lamp_radiance(view.lamp[firstTrailingBit(left)], in.point);
     }
     let shown = rain_contrast(opacity, view.contrast);
     return vec4<f32>(mix(view.fog.rgb, light, card.place.w) * shown, shown);

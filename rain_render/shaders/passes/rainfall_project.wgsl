@@ -76,12 +76,16 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
         tail = mix(tail, head, (near - tail.w) / (head.w - tail.w));
     }
     let distance = max(0.5 * (head.w + tail.w), near);
-    let size = diameter_mm * 1e-3 * view.focal / distance;
+    let d = min(length(p) * view.size.w, 1.0);
+    let larger = view.size.x + d * (view.size.y + d * view.size.z);
+    let size = larger * diameter_mm * 1e-3 * view.focal / distance;
     let a = to_pixels(head);
     let b = to_pixels(tail);
     let width = max(1.0, size);
     let span = max(1.0, length(b - a) + size);
-    let opacity = min(1.0, 0.7853982 * size * size / (width * span));
+    // Off the axis a flat picture draws a sphere out to an ellipse.
+    let secant = clamp(length(0.5 * (p + before)) / distance, 1.0, 4.0);
+    let opacity = min(1.0, 0.7853982 * size * size * secant / (width * span));
     out.ends = vec4<f32>(a, b);
     out.shape = vec4<f32>(
         head.z / head.w,

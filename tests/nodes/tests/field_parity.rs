@@ -2,8 +2,8 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use rain_core::rainfall::{
-    CLASS_COUNT, Container, Distribution, DrawRange, FADE_END, FieldMotion, Lamp, RainViewVolume, SizeClass, Spectrum,
-    terminal_velocity, visible_range_m,
+    CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, FADE_END, FieldMotion, Lamp, RainViewVolume, SizeClass,
+    Spectrum, Thinning, terminal_velocity, visible_range_m,
 };
 use rain_render::cover::open_sky;
 use rain_render::gpu_types::Streak;
@@ -24,6 +24,7 @@ pub struct FieldView {
     pub seconds: f64,
     pub wind_m_s: glam::DVec3,
     pub lamps: Vec<Lamp>,
+    pub detail: Option<DetailLaw>,
 }
 
 impl Default for FieldView {
@@ -38,6 +39,7 @@ impl Default for FieldView {
             seconds: 1234.5,
             wind_m_s: glam::DVec3::new(3.0, 0.0, -1.0),
             lamps: Vec::new(),
+            detail: None,
         }
     }
 }
@@ -80,7 +82,11 @@ impl FieldView {
         motion.set_velocity(self.wind_m_s, 1.2041);
         motion.advance(self.seconds);
         let mut container = Container::default();
-        assert!(container.fill(seed, spectrum, &motion, &volume, self.kappa, 1 << 21));
+        let thinning = Thinning {
+            detail: self.detail,
+            ..Thinning::default()
+        };
+        assert!(container.fill_local(seed, spectrum, &motion, &volume, self.kappa, 1 << 21, &thinning));
         container
     }
 
@@ -102,6 +108,7 @@ impl FieldView {
                 contrast: 1.0,
                 kappa: self.kappa as f32,
                 soft_m: 0.0,
+                detail: self.detail,
             },
             lighting: Lighting {
                 environment_scale: 0.0,

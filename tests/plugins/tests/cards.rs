@@ -153,7 +153,7 @@ fn pictures_come_from_a_folder_without_a_pass() {
     for _ in 0..2 {
         let mut test = aloft(50.0, 4.0);
         test.world().insert_resource(settings.clone());
-        test.frames(4, FRAME);
+        test.frames(6, FRAME);
         assert!(test.recorded(PassName::Lattice) >= 3);
         assert_eq!(test.recorded(PassName::StreakTextures), 0);
         let files = std::fs::read_dir(&folder).expect("the folder").count();
