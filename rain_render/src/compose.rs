@@ -33,6 +33,7 @@ pub const LIBRARIES: &[Library] = library![
     "cover",
     "streak",
     "drop_light",
+    "lamp_light",
     "surroundings",
     "haze",
     "wetness",

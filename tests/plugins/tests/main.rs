@@ -5,6 +5,7 @@ mod auto_paint;
 mod bad_meshes;
 mod beads;
 mod by_hand;
+mod cards;
 mod device_loss;
 mod far_scene;
 mod film_flow;
