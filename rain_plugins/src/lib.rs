@@ -23,8 +23,8 @@
 //! |---|---|
 //! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
 //! | [`cover::CoverPlugin`] | what stops rain |
-//! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
 //! | [`haze::HazePlugin`] | haze of rain, far showers, glow of lamps |
+//! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
@@ -95,8 +95,8 @@ impl Plugin for RainSchedulePlugin {
 /// What users type.
 pub mod prelude {
     pub use crate::cover::CoverSettings;
-    pub use crate::haze::{ArtistFog, DrawnTiers, HazeMask, HazePlugin, HazeSettings};
-    pub use crate::rainfall::RainView;
+    pub use crate::haze::{ArtistFog, HazeMask, HazePlugin, HazeSettings};
+    pub use crate::rainfall::{CardSettings, RainView};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::splash::{SplashMask, SplashSettings};

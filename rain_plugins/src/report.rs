@@ -20,8 +20,12 @@ pub enum PassName {
     Reflection,
     /// Haze of rain.
     Haze,
+    /// Streak textures, made once.
+    StreakTextures,
     /// Splashes of rain.
     Splash,
+    /// Cards of many drops, beyond the single streaks.
+    Lattice,
     /// Streaks near the eye.
     Rainfall,
     /// Measurement masks (only when asked for).
@@ -39,7 +43,9 @@ impl PassName {
             Self::Waves => "waves",
             Self::Reflection => "reflection",
             Self::Haze => "haze",
+            Self::StreakTextures => "streak_textures",
             Self::Splash => "splash",
+            Self::Lattice => "lattice",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
         }
@@ -105,7 +111,7 @@ pub struct PassRecord {
     pub skipped: BTreeMap<SkipReason, u64>,
 }
 
-/// Frames whose drop counts are kept.
+/// Frames whose counts of drops and cards are kept.
 pub const KEPT_FRAMES: usize = 16_384;
 
 /// What the rain passes did: shared by the main and the render world.
@@ -121,6 +127,8 @@ pub struct Report {
     pub passes: BTreeMap<PassName, PassRecord>,
     /// Drops handed to the GPU in the latest frames that drew rain, at most [`KEPT_FRAMES`] of them.
     pub drops: VecDeque<u32>,
+    /// Cards handed to the GPU in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
+    pub cards: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
     pub gpu_memory_bytes: usize,
 }
@@ -149,11 +157,12 @@ impl RainReport {
 
     /// Notes how many drops a frame drew.
     pub fn drops(&self, count: u32) {
-        let mut report = self.lock();
-        if report.drops.len() == KEPT_FRAMES {
-            report.drops.pop_front();
-        }
-        report.drops.push_back(count);
+        keep(&mut self.lock().drops, count);
+    }
+
+    /// Notes how many cards a frame drew.
+    pub fn cards(&self, count: u32) {
+        keep(&mut self.lock().cards, count);
     }
 
     /// Notes the GPU memory in use.
@@ -177,4 +186,12 @@ impl RainReport {
     pub fn reset(&self) {
         *self.lock() = Report::default();
     }
+}
+
+/// The latest counts.
+fn keep(counts: &mut VecDeque<u32>, count: u32) {
+    if counts.len() == KEPT_FRAMES {
+        counts.pop_front();
+    }
+    counts.push_back(count);
 }

@@ -37,6 +37,18 @@ struct RainfallClass {
     diameter: vec4<f32>,
 }
 
+// A point or spot light.
+struct LampParams {
+    // Relative to the eye, m; w: radius, m.
+    place: vec4<f32>,
+    // Illuminance at a metre, exposed; w: cosine of the angle up to which it is whole, -1 for a point light.
+    intensity: vec4<f32>,
+    // Where a spot looks; w: cosine of the angle at which it ends, -2 for a point light.
+    direction: vec4<f32>,
+    // x: 1 / square of the range, 1/m2.
+    limits: vec4<f32>,
+}
+
 struct RainfallView {
     // Eye-relative world to clip, at the end of the exposure.
     clip_from_eye: mat4x4<f32>,
@@ -52,6 +64,8 @@ struct RainfallView {
     sun: vec4<f32>,
     // How far the container reaches ahead of the eye, m; w unused.
     lead: vec4<f32>,
+    // A drop's size over its own by distance d: x + y d + z d2; w: d for a metre.
+    size: vec4<f32>,
     // Width and height, px.
     viewport: vec2<f32>,
     // Focal length, px.
@@ -67,11 +81,12 @@ struct RainfallView {
     // Fade against the scene over this distance, m; 0 = hard depth test only.
     soft: f32,
     drops: u32,
-    pad_a: u32,
+    lamps: u32,
     pad_b: u32,
     pad_c: u32,
     cover: CoverParams,
     classes: array<RainfallClass, 12>,
+    lamp: array<LampParams, 16>,
 }
 
 // See `DropRecord` in rain_core.
@@ -378,16 +393,6 @@ struct TileDrop {
     diameter: f32,
     // Opacity over that of a whole drop.
     share: f32,
-}
-
-// A point or spot light.
-struct LampParams {
-    // Relative to the eye, m; w: radius, m.
-    place: vec4<f32>,
-    // Illuminance at a metre, exposed; w: cosine of the angle up to which it is whole, -1 for a point light.
-    intensity: vec4<f32>,
-    // Where a spot looks; w: cosine of the angle at which it ends, -2 for a point light.
-    direction: vec4<f32>,
 }
 
 // A view of the lattice.

@@ -49,6 +49,7 @@ pub struct RainfallView {
     pub sun_direction: [f32; 4],
     pub sun: [f32; 4],
     pub lead: [f32; 4],
+    pub size: [f32; 4],
     pub viewport: [f32; 2],
     pub focal: f32,
     pub near: f32,
@@ -57,11 +58,12 @@ pub struct RainfallView {
     pub kappa: f32,
     pub soft: f32,
     pub drops: u32,
-    pub pad_a: u32,
+    pub lamps: u32,
     pub pad_b: u32,
     pub pad_c: u32,
     pub cover: CoverParams,
     pub classes: [RainfallClass; CLASS_COUNT],
+    pub lamp: [LampParams; MAX_LAMPS],
 }
 
 /// A projected streak; written and read by the GPU only.
@@ -319,6 +321,7 @@ pub struct LampParams {
     pub place: [f32; 4],
     pub intensity: [f32; 4],
     pub direction: [f32; 4],
+    pub limits: [f32; 4],
 }
 
 /// A view of the lattice.
@@ -465,8 +468,8 @@ pub fn layouts() -> Vec<Layout> {
     vec![
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
-        layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead,
-            viewport, focal, near, exposure, contrast, kappa, soft, drops, pad_a, pad_b, pad_c, cover, classes),
+        layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead, size,
+            viewport, focal, near, exposure, contrast, kappa, soft, drops, lamps, pad_b, pad_c, cover, classes, lamp),
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
@@ -488,7 +491,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(StreakTile: texels, first, drops, pad_a, path, unit, steps, pad_b),
         layout!(StreakLevel: side, first, above, words, row, pad_a, pad_b, pad_c),
         layout!(TileDrop: x, y, diameter, share),
-        layout!(LampParams: place, intensity, direction),
+        layout!(LampParams: place, intensity, direction, limits),
         layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
             lamps, pad_a, pad_b, pad_c, cover, lamp),
         layout!(Card: centre, facing, turn, place, layers),

@@ -9,6 +9,7 @@ pub mod compose;
 pub mod cover;
 pub mod gpu_types;
 pub mod haze;
+mod lamps;
 pub mod lattice;
 pub mod masks;
 mod overlay;

@@ -9,4 +9,4 @@ mod view;
 
 pub use settings::{ArtistFog, HazeSettings, MAX_HAZE_LIMIT_M};
 pub(crate) use view::HazeShot;
-pub use view::{DrawnTiers, HazeMask, HazePlugin, HazeViewFrame};
+pub use view::{HazeMask, HazePlugin, HazeViewFrame};

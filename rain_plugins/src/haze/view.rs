@@ -16,7 +16,7 @@ use rain_render::haze::{GlowingLamp, HazeFog};
 use super::lamps::{Lamps, strongest};
 use super::settings::HazeSettings;
 use crate::cover::AirAroundView;
-use crate::rainfall::{RainView, RainViewFrame, fill_containers};
+use crate::rainfall::{CardViewFrame, RainView, RainViewFrame, fill_cards, fill_containers};
 use crate::render_adapter::let_depth_be_read;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -26,15 +26,6 @@ const NEGLIGIBLE_DEPTH: f64 = 1.0 / 1024.0;
 
 /// Tables of what is drawn are made anew when the extinction or the quality has changed by this share.
 const TABLE_STEP: f64 = 0.01;
-
-/// What of the rain a view draws as drops, so that haze leaves it out. Streaks count by themselves; whoever draws cards
-/// between them and the haze says so here.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[reflect(Component, Default)]
-pub struct DrawnTiers {
-    /// Cards of the lattice are drawn (`rain_core::haze::mid_weight`).
-    pub cards: bool,
-}
 
 /// An image that receives how much of each pixel haze obscures (R16Float, made with
 /// [`mask_image`](crate::render_adapter::mask_image)). Put it on a camera with `RainView` and `Msaa::Off`.
@@ -136,14 +127,15 @@ pub struct HazePlugin;
 impl Plugin for HazePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<HazeSettings>()
-            .register_type::<DrawnTiers>()
             .init_resource::<AirAroundView>()
             .add_systems(
                 PostUpdate,
-                aim_haze.in_set(RainViewSystems::Views).after(fill_containers),
+                aim_haze
+                    .in_set(RainViewSystems::Views)
+                    .after(fill_containers)
+                    .after(fill_cards),
             );
         app.register_required_components::<RainView, HazeSettings>();
-        app.register_required_components::<RainView, DrawnTiers>();
         app.register_required_components::<RainView, HazeViewFrame>();
     }
 }
@@ -158,7 +150,7 @@ fn aim_haze(
     mut errors: MessageWriter<RainConfigError>,
     lights: Lamps,
     mut views: Query<(
-        (Entity, &RainView, Ref<HazeSettings>, &DrawnTiers),
+        (Entity, &RainView, Ref<HazeSettings>, Option<&CardViewFrame>),
         &Camera,
         &mut Camera3d,
         &Projection,
@@ -174,7 +166,7 @@ fn aim_haze(
         areas.field_after(since_tick, &mut local);
     }
     let mut any = false;
-    for ((entity, view, settings, tiers), camera, mut camera_3d, projection, transform, rain, mut frame) in &mut views {
+    for ((entity, view, settings, cards), camera, mut camera_3d, projection, transform, rain, mut frame) in &mut views {
         any = true;
         let frame = &mut *frame;
         frame.shot = None;
@@ -242,7 +234,7 @@ fn aim_haze(
                 focal_px: rain.focal_px.into(),
                 exposure_s: shutter.exposure_s.into(),
             },
-            cards: tiers.cards,
+            cards: cards.is_some_and(|frame| frame.cards() > 0),
         });
         let packed = areas.map(|areas| {
             let mut packed = AreaFieldF32::default();

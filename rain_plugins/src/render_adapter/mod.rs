@@ -6,12 +6,14 @@
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
 //! | `haze.rs` | all three for haze |
+//! | `lattice.rs` | all three for cards and their streak textures |
 //! | `splash.rs` | all three for splashes |
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
 mod haze;
+mod lattice;
 mod prepare;
 mod record;
 mod splash;
@@ -322,6 +324,8 @@ impl Plugin for RainRenderPlugin {
             .init_gpu_resource::<prepare::RainGpu>()
             .init_gpu_resource::<splash::SplashViews>()
             .init_gpu_resource::<haze::HazeViews>()
+            .init_gpu_resource::<lattice::LatticeViews>()
+            .init_resource::<lattice::ExtractedStreaks>()
             .init_resource::<extract::ExtractedWaves>()
             .init_resource::<extract::ExtractedMap>()
             .add_systems(
@@ -332,12 +336,18 @@ impl Plugin for RainRenderPlugin {
                     extract::extract_map,
                     splash::extract_splashes,
                     haze::extract_haze,
+                    lattice::extract_cards,
                 ),
             )
             .add_systems(
                 Render,
                 (
-                    (haze::prepare_haze, splash::prepare_splashes, prepare::prepare_rain)
+                    (
+                        haze::prepare_haze,
+                        splash::prepare_splashes,
+                        lattice::prepare_cards,
+                        prepare::prepare_rain,
+                    )
                         .chain()
                         .in_set(RenderSystems::PrepareBindGroups),
                     wave_levels::show_levels.in_set(RenderSystems::Cleanup),
@@ -345,7 +355,9 @@ impl Plugin for RainRenderPlugin {
             )
             .add_systems(
                 RenderGraph,
-                (record::water_map, record::water).chain().before(camera_driver),
+                (record::water_map, record::water, lattice::streak_textures)
+                    .chain()
+                    .before(camera_driver),
             )
             .add_systems(
                 Core3d,
@@ -366,7 +378,7 @@ impl Plugin for RainRenderPlugin {
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transmissive_pass_3d)
                         .before(main_transparent_pass_3d),
-                    (haze::haze_over_sky, splash::splash, record::rainfall)
+                    (haze::haze_over_sky, splash::splash, lattice::lattice, record::rainfall)
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),

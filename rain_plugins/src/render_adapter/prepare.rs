@@ -26,6 +26,7 @@ use rain_render::waves::{WaveTileGpu, WavesGpu};
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
 use super::haze::HazeViews;
+use super::lattice::LatticeViews;
 use super::splash::SplashViews;
 use crate::report::RainReport;
 use crate::surface::RainMaskView;
@@ -324,7 +325,7 @@ pub(super) fn prepare_rain(
     images: Res<RenderAssets<GpuImage>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
-    (splashes, hazes): (Res<SplashViews>, Res<HazeViews>),
+    (splashes, hazes, cards): (Res<SplashViews>, Res<HazeViews>, Res<LatticeViews>),
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
@@ -419,6 +420,7 @@ pub(super) fn prepare_rain(
             .prepare_pipelines(device, view.target_format, msaa.samples(), rain.masks.is_some());
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
+        let lamps = rain.lamps.seen_from(eye, camera.exposure);
         let input = RainfallInput {
             container: &rain.container,
             seed: rain.seed,
@@ -433,6 +435,7 @@ pub(super) fn prepare_rain(
                 ..shutter
             },
             lighting: view_lighting(&scene, environment, camera.exposure),
+            lamps: &lamps,
             cover: cover_at(eye.as_dvec3()),
         };
         let textures = RainfallTextures {
@@ -461,6 +464,7 @@ pub(super) fn prepare_rain(
             + gpu.water_map.as_ref().map_or(0, |map| map.memory_bytes() as usize)
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
             + splashes.memory_bytes()
-            + hazes.memory_bytes(),
+            + hazes.memory_bytes()
+            + cards.memory_bytes(),
     );
 }

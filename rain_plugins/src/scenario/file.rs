@@ -460,6 +460,8 @@ pub struct RainSettings {
     pub cloud_base_m: f64,
     /// Gain on the glow of lamps in the haze. Units: none. Domain: [0, 100]; 1 is physical. Default: 1.
     pub glow: f64,
+    /// Whether rain beyond the single drops is drawn, as cards of many. Default: true.
+    pub cards: bool,
 }
 
 /// Where rings on water come from.
@@ -486,6 +488,7 @@ impl Default for RainSettings {
             haze: true,
             cloud_base_m: 1000.0,
             glow: 1.0,
+            cards: true,
             look: WetLook::Physical,
         }
     }

@@ -306,6 +306,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             streak_budget: Some(scenario.rain.streak_budget),
             contrast: scenario.rain.contrast as f32,
             exposure_s: scenario.rain.exposure_s as f32,
+            cards: scenario.rain.cards,
             ..default()
         });
         camera.insert(HazeSettings {

@@ -1,6 +1,7 @@
 //! The passes against their CPU twins, on a bare device.
 
 mod artist_look;
+mod beads;
 mod cover_parity;
 mod device;
 mod far;
