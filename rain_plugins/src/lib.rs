@@ -25,11 +25,13 @@
 //! | [`cover::CoverPlugin`] | what stops rain |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
+//! | [`lens::LensPlugin`] | drops on the glass of cameras that ask for it |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
 //! | [`render_adapter::RainRenderPlugin`] | the passes |
 
 pub mod cover;
+pub mod lens;
 pub mod rainfall;
 pub mod render_adapter;
 pub mod report;
@@ -62,6 +64,7 @@ impl PluginGroup for RainPlugins {
             .add(splash::SplashPlugin)
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
+            .add(lens::LensPlugin)
     }
 }
 
@@ -92,6 +95,7 @@ impl Plugin for RainSchedulePlugin {
 /// What users type.
 pub mod prelude {
     pub use crate::cover::CoverSettings;
+    pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
     pub use crate::rainfall::RainView;
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
@@ -103,9 +107,10 @@ pub mod prelude {
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
-        RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, splash::SplashPlugin, surface::WetSurfacePlugin,
-        waves::WavesPlugin,
+        RainPlugins, cover::CoverPlugin, lens::LensPlugin, rainfall::RainfallPlugin, splash::SplashPlugin,
+        surface::WetSurfacePlugin, waves::WavesPlugin,
     };
+    pub use rain_core::lens::{WiperArm, WiperMode};
     pub use rain_core::surface::SurfaceState;
     pub use rain_ecs::prelude::*;
 }

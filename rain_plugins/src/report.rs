@@ -24,6 +24,8 @@ pub enum PassName {
     Rainfall,
     /// Measurement masks (only when asked for).
     Masks,
+    /// Drops on the camera's glass.
+    Lens,
 }
 
 impl PassName {
@@ -39,6 +41,7 @@ impl PassName {
             Self::Splash => "splash",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
+            Self::Lens => "lens",
         }
     }
 }

@@ -51,6 +51,7 @@ pub const LIBRARIES: &[Library] = library![
     "lattice",
     "landing",
     "splash",
+    "lens",
     "surface_mask"
 ];
 
@@ -82,7 +83,8 @@ pub const PASSES: &[Pass] = passes![
     "streak_texture",
     "lattice_draw",
     "splash_make",
-    "splash_draw"
+    "splash_draw",
+    "lens"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:

@@ -9,6 +9,7 @@ pub mod compose;
 pub mod cover;
 pub mod gpu_types;
 pub mod lattice;
+pub mod lens;
 pub mod masks;
 mod overlay;
 pub mod rainfall;

@@ -10,6 +10,7 @@
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
+mod lens;
 mod prepare;
 mod record;
 mod splash;
@@ -311,6 +312,7 @@ impl Plugin for RainRenderPlugin {
             .insert_resource(levels)
             .init_gpu_resource::<prepare::RainGpu>()
             .init_gpu_resource::<splash::SplashViews>()
+            .init_gpu_resource::<lens::LensViews>()
             .init_resource::<extract::ExtractedWaves>()
             .init_resource::<extract::ExtractedMap>()
             .add_systems(
@@ -320,12 +322,13 @@ impl Plugin for RainRenderPlugin {
                     extract::extract_waves,
                     extract::extract_map,
                     splash::extract_splashes,
+                    lens::extract_lenses,
                 ),
             )
             .add_systems(
                 Render,
                 (
-                    (splash::prepare_splashes, prepare::prepare_rain)
+                    (splash::prepare_splashes, lens::prepare_lenses, prepare::prepare_rain)
                         .chain()
                         .in_set(RenderSystems::PrepareBindGroups),
                     wave_levels::show_levels.in_set(RenderSystems::Cleanup),
@@ -354,6 +357,9 @@ impl Plugin for RainRenderPlugin {
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),
+                    lens::lens
+                        .after(Core3dSystems::MainPass)
+                        .before(Core3dSystems::EarlyPostProcess),
                 ),
             );
     }

@@ -25,6 +25,7 @@ use rain_render::water_map::{WaterMapGpu, WaterMapInput, WaterMapPasses};
 use rain_render::waves::{WaveTileGpu, WavesGpu};
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
+use super::lens::LensViews;
 use super::splash::SplashViews;
 use crate::report::RainReport;
 use crate::surface::RainMaskView;
@@ -324,6 +325,7 @@ pub(super) fn prepare_rain(
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
     splashes: Res<SplashViews>,
+    lenses: Res<LensViews>,
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
@@ -459,6 +461,7 @@ pub(super) fn prepare_rain(
                 .map_or(0, |tile| tile.memory_bytes() as usize)
             + gpu.water_map.as_ref().map_or(0, |map| map.memory_bytes() as usize)
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
-            + splashes.memory_bytes(),
+            + splashes.memory_bytes()
+            + lenses.memory_bytes(),
     );
 }

@@ -21,6 +21,7 @@
 
 use std::path::PathBuf;
 
+use rain_core::lens::WiperMode;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
 use super::areas::RainAreas;
@@ -447,6 +448,20 @@ pub struct RainSettings {
     /// Crowns and thrown drops of splashes drawn, about; twice as many is the hard bound, 0 draws none. Domain:
     /// 0…1 000 000. Default: 8000.
     pub splash_budget: u32,
+    /// Glass before the camera that the rain wets. Default: `Off`.
+    pub lens: Lens,
+}
+
+/// What glass a scenario's camera looks through.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Lens {
+    /// None that is wetted.
+    #[default]
+    Off,
+    /// The camera's own.
+    Camera,
+    /// A windscreen with wipers.
+    Windscreen(WiperMode),
 }
 
 /// Where rings on water come from.
@@ -470,6 +485,7 @@ impl Default for RainSettings {
             exposure_s: 1.0 / 60.0,
             rings: Rings::default(),
             splash_budget: 8_000,
+            lens: Lens::Off,
             look: WetLook::Physical,
         }
     }

@@ -8,6 +8,7 @@ mod field_parity;
 mod film_waves;
 mod hash_parity;
 mod lattice;
+mod lens;
 mod maps;
 mod optical_depth;
 mod rain_areas;

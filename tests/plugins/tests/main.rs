@@ -9,6 +9,7 @@ mod far_scene;
 mod film_flow;
 mod groups;
 mod large_scene;
+mod lens;
 mod looks;
 mod materials;
 mod mirrors;
