@@ -66,8 +66,8 @@ pub mod prelude {
         SurfaceSettings, surface_class_of_name,
     };
     pub use crate::weather::{
-        ActiveWeather, ArtistControls, RainTypeTable, WaterByHand, Weather, WeatherIgnored, WeatherMode, WeatherPlugin,
-        WeatherState, WeatherTimeline,
+        ActiveWeather, ArtistControls, LevelCurve, LevelKey, LevelTimeline, RainTypeTable, WaterByHand, Weather,
+        WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState, WeatherTimeline,
     };
     pub use rain_core::rainfall::Distribution;
     pub use rain_core::rainfall::areas::{AreaFade, AreaKey, AreaMotion, AreaRain, AreaSettings, AreaShape};

@@ -127,6 +127,7 @@ fn painted_puddles_splash_when_the_weather_has_flooded_them() {
     let by_hand = |water_level| WaterByHand {
         wetness: None,
         water_level,
+        hole_level: None,
     };
     app.world_mut().entity_mut(weather).insert(by_hand(Some(0.0)));
     run(&mut app, 1);

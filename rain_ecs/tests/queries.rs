@@ -131,9 +131,11 @@ fn wetness_and_level_set_by_hand_are_answered_and_the_water_is_there_again_after
     let dry = hash(&app);
     assert_eq!(answers(&mut app), ([0.0; 3], [0.0; 3]), "dry");
     let set = |app: &mut App, wetness: Option<f64>, water_level: Option<f64>| {
-        app.world_mut()
-            .entity_mut(weather)
-            .insert(WaterByHand { wetness, water_level });
+        app.world_mut().entity_mut(weather).insert(WaterByHand {
+            wetness,
+            water_level,
+            hole_level: None,
+        });
         frame(app, SECOND / 16);
     };
     set(&mut app, Some(0.6), None);

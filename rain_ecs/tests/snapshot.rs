@@ -213,3 +213,54 @@ fn what_is_seen_only_travels_between_worlds_that_see_and_those_that_do_not() {
     let strange = save(&client).restore(server.world_mut()).expect_err("unknown part");
     assert!(matches!(strange, SnapshotError::UnknownPart { .. }), "{strange}");
 }
+
+#[test]
+fn levels_play_back_restore_and_stay_when_switched_off() {
+    let levels = |share: f64| WaterByHand {
+        wetness: Some(share),
+        water_level: Some(0.5 * share),
+        hole_level: Some(0.25 * share),
+    };
+    let key = |time_s, share| LevelKey {
+        time_s,
+        levels: levels(share),
+    };
+    let curve = LevelCurve::new(vec![key(0.0, 0.0), key(8.0, 1.0), key(16.0, 0.0)], Some(16.0)).expect("valid");
+    let mut first = app(RainClock::default());
+    let entity = first
+        .world_mut()
+        .spawn((Weather::default(), LevelTimeline::new(curve)))
+        .id();
+    let shown = |app: &mut App| {
+        let world = app.world_mut();
+        let state = world.query::<&WeatherState>().single(world).expect("one");
+        let levels = state.shown_levels();
+        (levels.wetness, levels.puddles, levels.holes)
+    };
+    run(&mut first, 4);
+    assert_eq!(shown(&mut first), (0.5, 0.25, 0.125), "half way up");
+    run(&mut first, 8);
+    assert_eq!(shown(&mut first), (0.5, 0.25, 0.125), "half way down");
+    let mut second = app(RainClock::default());
+    second.world_mut().spawn(Weather::default());
+    save(&first).restore(second.world_mut()).expect("it fits");
+    for app in [&mut first, &mut second] {
+        run(app, 6);
+        assert_eq!(shown(app), (0.25, 0.125, 0.0625), "started over");
+    }
+    assert_eq!(state_hash(first.world()), state_hash(second.world()));
+
+    let mut timeline = first.world_mut().get_mut::<LevelTimeline>(entity).expect("it plays");
+    timeline.playing = false;
+    run(&mut first, 4);
+    assert_eq!(shown(&mut first), (0.25, 0.125, 0.0625), "switched off, levels stay");
+    first.world_mut().entity_mut(entity).insert(levels(1.0));
+    run(&mut first, 1);
+    assert_eq!(shown(&mut first), (1.0, 0.5, 0.25), "set by hand");
+    first
+        .world_mut()
+        .entity_mut(entity)
+        .remove::<(LevelTimeline, WaterByHand)>();
+    run(&mut first, 1);
+    assert_eq!(shown(&mut first), (0.0, 0.0, 0.0), "given back to dry weather");
+}

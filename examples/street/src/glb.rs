@@ -103,6 +103,10 @@ impl Glb {
             let t = floats(m.tangents.iter().map(glam::Vec4::to_array));
             attributes["TANGENT"] = json!(self.add_accessor(&t, n, "VEC4", 5126, ARRAY));
         }
+        if !m.colors.is_empty() {
+            let colors = floats(m.colors.iter().map(glam::Vec4::to_array));
+            attributes["COLOR_0"] = json!(self.add_accessor(&colors, n, "VEC4", 5126, ARRAY));
+        }
         let indices: Vec<u8> = if n <= 65_535 {
             m.indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect()
         } else {

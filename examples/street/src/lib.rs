@@ -1,4 +1,4 @@
-//! A European street in the rain, generated: `street.glb` with its own PBR textures, and `car.glb`.
+//! A European street in the rain, generated: `street.glb` with its own PBR textures, and `car.glb`; a paved court, `court.glb`.
 //!
 //! Everything comes from formulas and one seed; the same seed gives the same bytes. Where things are does not depend on
 //! the seed and is documented in [`mod@layout`], so that tests can stand in the arcade, measure hollows and look up at
@@ -7,6 +7,7 @@
 
 pub mod buildings;
 pub mod car;
+pub mod court;
 pub mod error;
 pub mod furniture;
 pub mod glb;
@@ -34,6 +35,10 @@ use std::path::Path;
 pub const STREET_FILE: &str = "street.glb";
 /// Name of the car's file.
 pub const CAR_FILE: &str = "car.glb";
+/// Name of the court's file.
+pub const COURT_FILE: &str = "court.glb";
+/// Name of the file with the depth of the court's paving.
+pub const COURT_DEPTH_FILE: &str = "court_depth.png";
 /// Seed of the street in pictures and tests.
 pub const DEFAULT_SEED: u64 = 7;
 /// Luminous intensity of a street lamp, candela: about 70 lx on the road below.
@@ -41,7 +46,7 @@ pub const LAMP_CD: f32 = 1700.0;
 /// Warm white (about 3000 K, seen by a camera balanced for dusk), linear RGB.
 const WARM: [f32; 3] = [1.0, 0.67, 0.35];
 
-/// Writes `street.glb` and `car.glb` into `dir`, which is made when it does not exist.
+/// Writes `street.glb`, `car.glb`, `court.glb` and `court_depth.png` into `dir`, which is made when it does not exist.
 ///
 /// # Errors
 /// [`StreetError::Write`] names what could not be written.
@@ -52,6 +57,8 @@ pub fn generate(dir: &Path, seed: u64) -> Result<Layout, StreetError> {
     })?;
     write_atomically(&dir.join(STREET_FILE), &street_glb(seed)?)?;
     write_atomically(&dir.join(CAR_FILE), &car::glb()?)?;
+    write_atomically(&dir.join(COURT_FILE), &court::glb(seed)?)?;
+    write_atomically(&dir.join(COURT_DEPTH_FILE), &court::depth_png(seed)?)?;
     Ok(layout())
 }
 

@@ -212,7 +212,8 @@ pub fn textures(seed: u64) -> Result<Vec<Encoded>, StreetError> {
     slots.into_iter().filter_map(std::sync::OnceLock::into_inner).collect()
 }
 
-fn surface(name: &str, factor: [f32; 3], m: MapIds) -> Value {
+/// A textured surface with relief.
+pub(crate) fn surface(name: &str, factor: [f32; 3], m: MapIds) -> Value {
     json!({
         "name": name,
         "pbrMetallicRoughness": {
@@ -244,6 +245,21 @@ fn glowing(mut m: Value, light: Option<usize>, factor: [f32; 3], strength: f32) 
     }
     m["extensions"] = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": strength } });
     m
+}
+
+/// Dark painted iron.
+pub(crate) fn iron() -> Value {
+    plain("iron", [0.022, 0.024, 0.026], 0.5, 0.0)
+}
+
+/// Glowing glass of lamps.
+pub(crate) fn lamp_glass() -> Value {
+    glowing(
+        plain("lamp-glass", [0.9, 0.85, 0.75], 0.4, 0.0),
+        None,
+        [1.0, 0.72, 0.42],
+        9.0,
+    )
 }
 
 fn textured(name: &str, texture: usize, roughness: f32) -> Value {
@@ -333,13 +349,8 @@ pub fn install(glb: &mut Glb, sets: &[Encoded]) {
                     "metallicRoughnessTexture": { "index": zinc.normal },
                 },
             }),
-            Mat::Iron => plain("iron", [0.022, 0.024, 0.026], 0.5, 0.0),
-            Mat::Glow => glowing(
-                plain("lamp-glass", [0.9, 0.85, 0.75], 0.4, 0.0),
-                None,
-                [1.0, 0.72, 0.42],
-                9.0,
-            ),
+            Mat::Iron => iron(),
+            Mat::Glow => lamp_glass(),
             Mat::Glass => {
                 let mut m = plain("clear-glass", [0.55, 0.6, 0.6], 0.06, 0.0);
                 m["pbrMetallicRoughness"]["baseColorFactor"][3] = json!(0.16);

@@ -70,6 +70,8 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Unit vector along growing u, and the sign of the bitangent (towards the top of the image).
     pub tangents: Vec<Vec4>,
+    /// Linear RGBA in [0, 1] of each vertex, or empty: none.
+    pub colors: Vec<Vec4>,
     /// Three per triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
 }

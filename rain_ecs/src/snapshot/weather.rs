@@ -5,7 +5,10 @@ use rain_core::weather::{ArtistSettings, Timeline, WeatherConditions};
 use serde::{Deserialize, Serialize};
 
 use super::{Apply, SnapshotError, SnapshotPart};
-use crate::weather::{ActiveWeather, ArtistControls, WaterByHand, Weather, WeatherMode, WeatherState, WeatherTimeline};
+use crate::weather::{
+    ActiveWeather, ArtistControls, LevelCurve, LevelTimeline, WaterByHand, Weather, WeatherMode, WeatherState,
+    WeatherTimeline,
+};
 
 /// The weather in force: what the user set and what it has done. It is put on the entity whose weather counts, or on a
 /// new one.
@@ -18,6 +21,8 @@ pub(crate) struct WeatherPart {
     timeline: Option<(Timeline, f64)>,
     #[serde(default)]
     by_hand: Option<WaterByHand>,
+    #[serde(default)]
+    levels: Option<(LevelCurve, f64, bool)>,
     state: WeatherState,
 }
 
@@ -35,6 +40,9 @@ impl SnapshotPart for WeatherPart {
             timeline: timeline.map(|t| (t.timeline.clone(), t.start_s)),
             // As with the weather, what was refused has had no effect.
             by_hand: world.get::<WaterByHand>(entity).map(|_| state.by_hand),
+            levels: world
+                .get::<LevelTimeline>(entity)
+                .map(|t| (t.curve.clone(), t.start_s, t.playing)),
             state,
         })
     }
@@ -58,6 +66,14 @@ impl SnapshotPart for WeatherPart {
             None => None,
         };
         state.by_hand = by_hand.unwrap_or_default();
+        let levels = match self.levels {
+            Some((curve, start_s, playing)) => Some(LevelTimeline {
+                curve: curve.validated().map_err(|error| refused(error.to_string()))?,
+                start_s,
+                playing,
+            }),
+            None => None,
+        };
         let controls = match self.controls {
             Some(settings) => Some(settings.validated().map_err(|error| refused(error.to_string()))?),
             None => None,
@@ -83,6 +99,10 @@ impl SnapshotPart for WeatherPart {
             match by_hand {
                 Some(by_hand) => entity.insert(by_hand),
                 None => entity.remove::<WaterByHand>(),
+            };
+            match levels {
+                Some(levels) => entity.insert(levels),
+                None => entity.remove::<LevelTimeline>(),
             };
             match timeline {
                 Some(timeline) => entity.insert(timeline),

@@ -44,7 +44,12 @@ impl SnapshotPart for SurfacePart {
         let Some(state) = self.ground else {
             return match &surface.ground {
                 Some(_) => Err(refused("it has no ground, this world has one".into())),
-                None => Ok(Box::new(|_| ())),
+                None => Ok(Box::new(move |world| {
+                    let cover = world.get_resource::<CoverField>().map(CoverField::version);
+                    let mut surface = world.resource_mut::<SurfaceGround>();
+                    (surface.cursor, surface.again) = (cursor, again);
+                    surface.sees_cover(cover);
+                })),
             };
         };
         let mut ground = match &surface.ground {

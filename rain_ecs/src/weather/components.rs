@@ -163,6 +163,10 @@ pub struct WaterByHand {
     /// How full puddles, holes and the film of open ground are: 0 none, 1 about to spill; the film is then
     /// [`ArtistSettings::full_level_mm`]. Units: none. Domain: [0, 1]. `None`: the weather's.
     pub water_level: Option<f64>,
+    /// How full holes and cracks are, apart from puddles: the first of Lagarde's two flood levels (E25). Units: none.
+    /// Domain: [0, 1]. `None`: as `water_level` says.
+    #[serde(default)]
+    pub hole_level: Option<f64>,
 }
 
 impl WaterByHand {
@@ -173,12 +177,13 @@ impl WaterByHand {
     pub fn validated(self) -> Result<Self, ConfigError> {
         in_range("wetness", self.wetness.unwrap_or(0.0), 0.0, 1.0, "0 to 1")?;
         in_range("water_level", self.water_level.unwrap_or(0.0), 0.0, 1.0, "0 to 1")?;
+        in_range("hole_level", self.hole_level.unwrap_or(0.0), 0.0, 1.0, "0 to 1")?;
         Ok(self)
     }
 
     /// Whether anything is set.
     #[must_use]
     pub fn is_set(&self) -> bool {
-        self.wetness.is_some() || self.water_level.is_some()
+        self.wetness.is_some() || self.water_level.is_some() || self.hole_level.is_some()
     }
 }

@@ -3,6 +3,7 @@
 //! | file | concept |
 //! |---|---|
 //! | `components.rs` | [`Weather`], [`WeatherTimeline`], [`WeatherMode`], [`ArtistControls`], [`WaterByHand`] |
+//! | `levels.rs` | [`LevelTimeline`], which plays levels set by hand |
 //! | `state.rs` | [`WeatherState`], the output |
 //! | `systems.rs` | choosing, checking and advancing in [`crate::RainTick`] |
 //!
@@ -10,6 +11,7 @@
 //! reported once by a [`WeatherIgnored`] message.
 
 mod components;
+mod levels;
 mod state;
 mod systems;
 
@@ -17,6 +19,7 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
 pub use components::{ArtistControls, RainTypeTable, WaterByHand, Weather, WeatherMode, WeatherTimeline};
+pub use levels::{LevelCurve, LevelKey, LevelTimeline};
 pub use state::WeatherState;
 pub use systems::{ActiveWeather, WeatherIgnored};
 
@@ -38,6 +41,7 @@ impl Plugin for WeatherPlugin {
             .register_type::<WeatherMode>()
             .register_type::<ArtistControls>()
             .register_type::<WaterByHand>()
+            .register_type::<LevelTimeline>()
             .register_type::<RainTypeTable>()
             .register_type::<WeatherState>()
             .snapshot_part::<WeatherPart>("weather")
@@ -53,6 +57,7 @@ impl Plugin for WeatherPlugin {
                     (
                         systems::choose_weather,
                         systems::follow_rain_types,
+                        levels::play_levels,
                         systems::check_weather,
                     )
                         .chain()

@@ -110,7 +110,9 @@ impl WeatherState {
     pub fn shown_levels(&self) -> ArtistState {
         let mut levels = *self.surfaces.artist();
         levels.wetness = self.by_hand.wetness.unwrap_or(levels.wetness);
-        levels.holes = self.by_hand.water_level.unwrap_or(levels.holes);
+        levels.holes = (self.by_hand.hole_level)
+            .or(self.by_hand.water_level)
+            .unwrap_or(levels.holes);
         levels.puddles = self.by_hand.water_level.unwrap_or(levels.puddles);
         levels
     }
@@ -131,10 +133,15 @@ impl WeatherState {
     /// skip all rain work.
     #[must_use]
     pub fn is_dry_and_settled(&self) -> bool {
-        let WaterByHand { wetness, water_level } = self.by_hand;
+        let WaterByHand {
+            wetness,
+            water_level,
+            hole_level,
+        } = self.by_hand;
         self.conditions.intensity_mm_h == 0.0
             && wetness.unwrap_or(0.0) == 0.0
             && water_level.unwrap_or(0.0) == 0.0
+            && hole_level.unwrap_or(0.0) == 0.0
             && match self.mode {
                 WeatherMode::Physical => self.surfaces.ground_is_dry(),
                 WeatherMode::Artist => self.surfaces.artist().is_dry(),
@@ -187,6 +194,9 @@ impl HashState for WeatherState {
         if self.by_hand.is_set() {
             for value in [self.by_hand.wetness, self.by_hand.water_level] {
                 hasher.f64(value.unwrap_or(-1.0));
+            }
+            if let Some(level) = self.by_hand.hole_level {
+                hasher.f64(level);
             }
         }
         self.surfaces.for_each_state_bits(|bits| hasher.u64(bits));

@@ -27,6 +27,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 use super::areas::RainAreas;
 pub use super::captures::{Captures, RunUp};
 use super::expectation::Expectation;
+use super::puddles::{DepthMap, Puddles};
 use super::weather::Weather;
 use crate::surface::{WaterAppearance, WetLook};
 
@@ -123,6 +124,10 @@ pub struct ScenePart {
     pub yaw_deg: f64,
     /// Uniform scale. Units: none. Domain: [0.0001, 10 000]. Default: 1.
     pub scale: f64,
+    /// Puddles placed on its meshes: by vertex colours only on those that have any. Default: none.
+    pub puddles: Option<Puddles>,
+    /// Depth map given to its materials. Default: none.
+    pub depth_map: Option<DepthMap>,
 }
 
 impl Default for ScenePart {
@@ -133,6 +138,8 @@ impl Default for ScenePart {
             translation: [0.0; 3],
             yaw_deg: 0.0,
             scale: 1.0,
+            puddles: None,
+            depth_map: None,
         }
     }
 }

@@ -14,7 +14,7 @@ Scenario(
     seed: 42,
     duration_s: 600,
     scene: [
-        (file: "street.glb", name: "street"),
+        (file: "street.glb", name: "street", puddles: Painted(margin: 0.3), depth_map: (file: "depth.png", relief: 0.02)),
         (file: "shelter.glb", translation: (4, 0, -2), yaw_deg: 90, scale: 1.5),
     ],
     environment: (
@@ -44,6 +44,8 @@ Scenario(
         mode: Artist,
         wetness: 0.75,
         water_level: 0.25,
+        hole_level: 0.5,
+        levels: (keys: [(time_s: 0, wetness: 0), (time_s: 8, wetness: 1, water_level: 0.125)], period_s: 20),
     ),
     areas: (
         outside: 0.5,
@@ -273,6 +275,17 @@ fn values_out_of_domain_name_the_field() {
         ),
         ("wetness: 0.75", "wetness: 1.5", "weather.wetness", "0 to 1"),
         ("water_level: 0.25", "water_level: NaN", "weather.water_level", "0 to 1"),
+        ("hole_level: 0.5", "hole_level: -1", "weather.hole_level", "0 to 1"),
+        (
+            "water_level: 0.125",
+            "water_level: 2",
+            "weather.levels.keys.water_level",
+            "0 to 1",
+        ),
+        ("period_s: 20", "period_s: 7", "weather.levels.period_s", "not before"),
+        ("(time_s: 8, wetness", "(time_s: 0, wetness", "weather.levels", "rise"),
+        ("margin: 0.3", "margin: 0", "scene[0].puddles.margin", "0.0001 to 1"),
+        ("relief: 0.02", "relief: 2", "scene[0].depth_map.relief", "0 to 1"),
         ("wave_slope: 0.0625", "wave_slope: 0.75", "water.wave_slope", "0 to 0.5"),
         (
             "puddle_reflection: 0.875",

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `file.rs`, `captures.rs`, `weather.rs`, `areas.rs`, `expectation.rs` | what the file may say |
 //! | `load.rs`, `validate.rs`, `locate.rs`, `error.rs` | reading it, with line and column of what is wrong |
+//! | `puddles.rs` | puddles that an artist placed on a part |
 //! | `path.rs` | vehicles and cameras as functions of time |
 //! | `headless.rs`, `stage.rs`, `session.rs` | the app, its world, its clock |
 //! | `sky.rs` | the generated sky environment |
@@ -30,6 +31,7 @@ pub mod output;
 pub mod path;
 pub mod plot;
 mod probe;
+pub mod puddles;
 pub mod report;
 pub mod run;
 pub mod session;

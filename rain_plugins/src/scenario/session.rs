@@ -107,6 +107,9 @@ impl Session {
         stage::build(&mut app, scenario, assets)?;
         stage::wait_until_loaded(&mut app, |app| headless::step(app, Duration::ZERO))?;
         stage::dress(&mut app, scenario);
+        if scenario.rain.enabled {
+            super::puddles::place(&mut app, scenario, assets)?;
+        }
         super::mips::add_mips(&mut app);
         if scenario.rain.enabled {
             stage::weather(&mut app, scenario)?;

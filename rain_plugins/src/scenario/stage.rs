@@ -20,8 +20,10 @@ use rain_core::surface::Grate;
 use rain_core::surface::basins::{Drain, Inlet};
 use rain_ecs::prelude::*;
 
+use super::error::ScenarioError;
 use super::file::{Lens, Scenario, Sky};
 use super::path::{CameraPath, VehiclePath, wheel_angle_rad};
+use super::puddles::PartRoot;
 use super::run::RunError;
 use super::sky::{Cube, Handedness, SkyModel, generate};
 use crate::lens::{LensDrops, WindscreenWipers};
@@ -77,14 +79,16 @@ pub(super) fn build(app: &mut App, scenario: &Scenario, folder: &Path) -> Result
     app.init_resource::<Spawned>();
     app.add_observer(|ready: On<WorldInstanceReady>, mut spawned: ResMut<Spawned>| spawned.0.push(ready.entity));
     let mut waiting = Vec::new();
-    for part in &scenario.scene {
+    for (index, part) in scenario.scene.iter().enumerate() {
         let path = absolute(folder, &part.file)?;
         check_gltf(&path)?;
         let [x, y, z] = part.translation.map(|v| v as f32);
         let transform = Transform::from_xyz(x, y, z)
             .with_rotation(Quat::from_rotation_y(part.yaw_deg.to_radians() as f32))
             .with_scale(Vec3::splat(part.scale as f32));
-        waiting.push(spawn_gltf(app, path, transform));
+        let root = spawn_gltf(app, path, transform);
+        app.world_mut().entity_mut(root.2).insert(PartRoot(index));
+        waiting.push(root);
     }
     for vehicle in &scenario.vehicles {
         let path = absolute(folder, &vehicle.file)?;
@@ -543,7 +547,12 @@ pub(super) fn weather(app: &mut App, scenario: &Scenario) -> Result<(), RunError
     let by_hand = WaterByHand {
         wetness: scenario.weather.wetness,
         water_level: scenario.weather.water_level,
+        hole_level: scenario.weather.hole_level,
     };
+    let levels = scenario.weather.level_curve().map_err(|error| ScenarioError::Io {
+        file: scenario.folder.clone(),
+        message: error.to_string(),
+    })?;
     let mut weather = app.world_mut().spawn((
         Name::new("weather"),
         Weather::default(),
@@ -552,6 +561,9 @@ pub(super) fn weather(app: &mut App, scenario: &Scenario) -> Result<(), RunError
     ));
     if by_hand.is_set() {
         weather.insert(by_hand);
+    }
+    if let Some(curve) = levels {
+        weather.insert(LevelTimeline::new(curve));
     }
     app.insert_resource(RainOutside(scenario.areas.outside));
     for area in &scenario.areas.list {

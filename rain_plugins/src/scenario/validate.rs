@@ -114,6 +114,14 @@ impl Scenario {
             numbers(&format!("{at}.translation"), &part.translation, -WORLD_M, WORLD_M, "m")?;
             number(&format!("{at}.yaw_deg"), part.yaw_deg, -36_000.0, 36_000.0, "degrees")?;
             number(&format!("{at}.scale"), part.scale, 1e-4, 1e4, "")?;
+            if let Some(puddles) = &part.puddles {
+                puddles
+                    .check()
+                    .or_else(|(name, value, allowed)| problem(format!("{at}.puddles.{name}"), value, allowed))?;
+            }
+            if let Some(map) = &part.depth_map {
+                number(&format!("{at}.depth_map.relief"), map.relief, 0.0, 1.0, "")?;
+            }
         }
         count("drains", self.drains.len(), MAX_PARTS, "drains")?;
         for (i, drain) in self.drains.iter().enumerate() {
@@ -186,6 +194,24 @@ impl Scenario {
         }
         number("weather.wetness", weather.wetness.unwrap_or(0.0), 0.0, 1.0, "")?;
         number("weather.water_level", weather.water_level.unwrap_or(0.0), 0.0, 1.0, "")?;
+        number("weather.hole_level", weather.hole_level.unwrap_or(0.0), 0.0, 1.0, "")?;
+        if let Some(levels) = &weather.levels {
+            count("weather.levels.keys", levels.keys.len(), MAX_KEYS, "keys")?;
+        }
+        match weather.level_curve() {
+            Ok(_) => {}
+            Err(ConfigError::OutOfRange {
+                field: "period_s",
+                value,
+                allowed,
+            }) => {
+                return problem("weather.levels.period_s", value, allowed);
+            }
+            Err(ConfigError::OutOfRange { field, value, allowed }) => {
+                return problem(format!("weather.levels.keys.{field}"), value, allowed);
+            }
+            Err(other) => return problem("weather.levels", other, "keys whose times rise"),
+        }
         for (i, key) in weather.keys.iter().enumerate() {
             key.check(i.checked_sub(1).map(|i| &weather.keys[i]), &weather.base)
                 .or_else(|(name, value, allowed)| problem(format!("weather.keys[{i}].{name}"), value, allowed))?;

@@ -5,6 +5,7 @@ use std::path::Path;
 use rain_core::error::ConfigError;
 use rain_core::rainfall::Distribution;
 use rain_core::weather::{Keyframe, Timeline, Transition, WeatherConditions, WeatherPreset, read_hyetograph};
+use rain_ecs::prelude::{LevelCurve, LevelKey, WaterByHand};
 use serde::{Deserialize, Serialize};
 
 use super::error::ScenarioError;
@@ -35,6 +36,34 @@ pub struct Weather {
     pub wetness: Option<f64>,
     /// How full puddles are, set by hand, in place of the weather's. Units: none. Domain: [0, 1]. Default: none.
     pub water_level: Option<f64>,
+    /// How full holes and cracks are, set by hand; else as `water_level`. Units: none. Domain: [0, 1]. Default: none.
+    pub hole_level: Option<f64>,
+    /// Levels played back, in place of those set by hand. Default: none.
+    pub levels: Option<Levels>,
+}
+
+/// Levels over time, straight between keys; they act in either mode.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Levels {
+    /// Keys, strictly rising in time. Domain: 1 to 100 000.
+    pub keys: Vec<LevelsAt>,
+    /// After how long they start over. Units: s. Domain: not before the last key. Default: never.
+    pub period_s: Option<f64>,
+}
+
+/// Levels at a time; what a key leaves out is the weather's from there to the next that states it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LevelsAt {
+    /// When. Units: s. Domain: [0, 2 592 000]. Default: 0.
+    pub time_s: f64,
+    /// Wetness. Units: none. Domain: [0, 1].
+    pub wetness: Option<f64>,
+    /// How full puddles are. Units: none. Domain: [0, 1].
+    pub water_level: Option<f64>,
+    /// How full holes and cracks are; else as `water_level`. Units: none. Domain: [0, 1].
+    pub hole_level: Option<f64>,
 }
 
 /// Which model turns rain into wetness and water levels.
@@ -112,6 +141,23 @@ impl WeatherKey {
 }
 
 impl Weather {
+    /// The levels to play back.
+    ///
+    /// # Errors
+    /// What is wrong with them, which validation reports with the field.
+    pub fn level_curve(&self) -> Result<Option<LevelCurve>, ConfigError> {
+        let Some(levels) = &self.levels else { return Ok(None) };
+        let keys = levels.keys.iter().map(|key| LevelKey {
+            time_s: key.time_s,
+            levels: WaterByHand {
+                wetness: key.wetness,
+                water_level: key.water_level,
+                hole_level: key.hole_level,
+            },
+        });
+        LevelCurve::new(keys.collect(), levels.period_s).map(Some)
+    }
+
     /// The weather as a timeline: keys filled, the preset taken, or the table read from `folder`.
     ///
     /// # Errors

@@ -78,7 +78,11 @@ impl Pond {
     /// Wetness and level by hand.
     pub fn by_hand(&mut self, wetness: Option<f64>, water_level: Option<f64>) {
         let entity = self.weather;
-        let by_hand = WaterByHand { wetness, water_level };
+        let by_hand = WaterByHand {
+            wetness,
+            water_level,
+            hole_level: None,
+        };
         self.test.world().entity_mut(entity).insert(by_hand);
         self.test.frames(8, FRAME);
     }

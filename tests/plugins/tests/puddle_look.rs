@@ -319,6 +319,7 @@ fn lamps_draw_long_streaks_on_wet_road_and_hazy_ones_on_rough() {
     test.world().entity_mut(weather).insert(WaterByHand {
         wetness: Some(1.0),
         water_level: Some(1.0),
+        ..WaterByHand::default()
     });
     test.frames(8, FRAME);
     let wet = streak(&mut test);
@@ -326,6 +327,7 @@ fn lamps_draw_long_streaks_on_wet_road_and_hazy_ones_on_rough() {
     test.world().entity_mut(weather).insert(WaterByHand {
         wetness: Some(1.0),
         water_level: Some(0.12),
+        ..WaterByHand::default()
     });
     test.frames(8, FRAME);
     let rough = streak(&mut test);
@@ -390,6 +392,7 @@ impl Relief {
                 WaterByHand {
                     wetness: Some(0.3),
                     water_level: None,
+                    ..WaterByHand::default()
                 },
             ))
             .id();
@@ -545,6 +548,7 @@ fn noise_puddles_follow_the_relief_grow_from_soft_borders_and_have_drenched_rims
     relief.test.world().entity_mut(weather).insert(WaterByHand {
         wetness: Some(0.3),
         water_level: Some(0.7),
+        ..WaterByHand::default()
     });
     let by_hand = relief.show(NoisePuddles { level: None, ..base });
     assert!(flooded(&by_hand, at).len() > 100, "the level set by hand fills them");

@@ -263,6 +263,7 @@ fn the_map_is_recorded_when_something_changes_and_says_why_not_otherwise() {
     let by_hand = WaterByHand {
         wetness: None,
         water_level: Some(1.0),
+        ..WaterByHand::default()
     };
     test.world().entity_mut(weather).insert(by_hand);
     test.frames(2, FRAME);

@@ -3,6 +3,7 @@
 mod bad_input;
 mod border;
 mod determinism;
+mod examples;
 mod goldens;
 mod ground_masks;
 mod intensity;

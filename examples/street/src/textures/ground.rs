@@ -1,6 +1,6 @@
 //! What one walks and drives on: asphalt, road paint, setts, slabs, kerb stones, grates.
 
-use super::{Picture, Texel, bake, grey, srgb};
+use super::{Picture, Texel, bake, depth, grey, srgb};
 use crate::noise::{Rng, cellular, fbm, lattice, smoothstep, value};
 use glam::{Vec3, vec3};
 
@@ -10,6 +10,9 @@ pub const ASPHALT_WIDTH_M: f32 = 7.0;
 pub const ASPHALT_LENGTH_M: f32 = 14.0;
 /// Size of the small asphalt tile that holds relief and roughness, metres.
 pub const ASPHALT_DETAIL_M: f32 = 2.0;
+/// Width and height of a tile of setts, metres.
+pub const SETTS_TILE_M: f32 = 1.6;
+const SETTS_PX: [u32; 2] = [512, 512];
 
 /// Where a line wanders to about x = `centre` at `v`, metres.
 fn wandering(seed: u32, v: f32, centre: f32, sway: f32) -> f32 {
@@ -175,8 +178,18 @@ pub fn road_paint(seed: u32) -> Vec<Picture> {
 /// Granite setts of 10 cm in rows, a tile of 1.6 m.
 #[must_use]
 pub fn setts(seed: u32) -> Vec<Picture> {
+    bake("setts", SETTS_PX, [SETTS_TILE_M; 2], sett(seed))
+}
+
+/// How deep setts and their joints lie, for bump offset and standing water: 0 the highest stone, 1 the lowest joint.
+#[must_use]
+pub fn setts_depth(seed: u32) -> Picture {
+    depth("setts-depth", SETTS_PX, sett(seed))
+}
+
+fn sett(seed: u32) -> impl Fn(f32, f32) -> Texel {
     let n = 16;
-    bake("setts", [512, 512], [1.6; 2], move |u, v| {
+    move |u, v| {
         let row = (v * n as f32).floor() as i32;
         let shift = lattice(seed ^ 90, row, 0);
         let x = (u + shift / n as f32) * n as f32;
@@ -199,7 +212,7 @@ pub fn setts(seed: u32) -> Vec<Picture> {
         );
         t.open = 0.55 + 0.45 * top;
         t
-    })
+    }
 }
 
 /// Concrete slabs of 50 cm, a tile of 2 m.

@@ -175,6 +175,22 @@ pub fn bake(name: &str, size: [u32; 2], metres: [f32; 2], f: impl Fn(f32, f32) -
     vec![base, normal, orm]
 }
 
+/// Depth below the highest texel as a share of the whole relief, grey; a surface without relief is 0.
+#[must_use]
+pub fn depth(name: &str, size: [u32; 2], f: impl Fn(f32, f32) -> Texel) -> Picture {
+    let [w, h] = size;
+    let at = |k: u32| f(((k % w) as f32 + 0.5) / w as f32, ((k / w) as f32 + 0.5) / h as f32).height;
+    let heights: Vec<f32> = (0..w * h).map(at).collect();
+    let high = heights.iter().copied().fold(f32::MIN, f32::max);
+    let low = heights.iter().copied().fold(f32::MAX, f32::min);
+    let span = (high - low).max(1e-6);
+    Picture::new(name, w, h, 3, |x, y| {
+        let share = (high - heights[(y * w + x) as usize]) / span;
+        let grey = (share * 255.0).round() as u8;
+        [grey, grey, grey, 255]
+    })
+}
+
 /// Rounds to a multiple of 4 about the middle: invisible, and it halves the files.
 fn coarse(x: f32) -> u8 {
     ((((x - 127.5) / 4.0).round() * 4.0) + 128.0).clamp(0.0, 255.0) as u8

@@ -159,3 +159,39 @@ fn lamps_carry_lights_in_candela() {
         assert!(node.world.transform_point3(glam::Vec3::ZERO).x * side > 0.4);
     }
 }
+
+#[test]
+fn the_court_carries_its_puddles_in_its_vertex_colours() {
+    let bytes = street::court::glb(street::DEFAULT_SEED).expect("no file involved");
+    assert!(bytes.len() < 6 << 20, "court.glb has {} bytes", bytes.len());
+    assert!(bytes == street::court::glb(street::DEFAULT_SEED).expect("no file involved"));
+    let (document, buffers, _) = gltf::import_slice(&bytes).expect("valid glTF");
+    let ground = document
+        .nodes()
+        .find(|n| n.name() == Some("ground"))
+        .expect("there is ground");
+    let primitive = ground
+        .mesh()
+        .and_then(|m| m.primitives().next())
+        .expect("it has a mesh");
+    let reader = primitive.reader(|buffer| Some(&buffers[buffer.index()]));
+    let positions: Vec<[f32; 3]> = reader.read_positions().expect("positions").collect();
+    let colors: Vec<[f32; 4]> = reader.read_colors(0).expect("colours").into_rgba_f32().collect();
+    assert_eq!(positions.len(), colors.len());
+    let at = |x: f32, z: f32| {
+        let near = |p: &[f32; 3]| (p[0] - x).hypot(p[2] - z);
+        let nearest = (0..positions.len()).min_by(|&a, &b| near(&positions[a]).total_cmp(&near(&positions[b])));
+        colors[nearest.expect("vertices")]
+    };
+    for [x, z, _, _] in street::court::PUDDLES {
+        let [ripples, depth, wettable, fixed] = at(x, z);
+        assert!(depth < 0.2 && fixed < 0.2, "a puddle at {x}, {z}: {depth}, {fixed}");
+        assert_eq!((ripples, wettable), (1.0, 1.0));
+    }
+    assert_eq!(at(-5.9, 5.9), [1.0; 4], "no puddle in a corner");
+    let depth = image::load_from_memory(&street::court::depth_png(street::DEFAULT_SEED).expect("no file involved"))
+        .expect("a picture")
+        .into_luma8();
+    let (low, high) = depth.iter().fold((255, 0), |(l, h), &v| (l.min(v), h.max(v)));
+    assert_eq!((low, high), (0, 255), "the relief spans the whole range");
+}
