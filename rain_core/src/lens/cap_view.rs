@@ -20,7 +20,7 @@ pub struct CapView {
 /// The cap of a sphere leans by sin α = share · sin θ there, θ = 45°; the line leaves the water at sin β = n sin α and turns
 /// by β − α towards the axis: the image stands upside down and small. What Fresnel's reflection takes darkens the rim.
 ///
-/// Error: `1e-14` against Snell's and Fresnel's laws by angles; eyes beside the axis see the same to first order.
+/// Error: 1e-14 against Snell's and Fresnel's laws by angles; eyes beside the axis see the same to first order.
 #[must_use]
 pub fn cap_view(share: f64) -> CapView {
     let lean = clamped(share, 0.0, 1.0) * ops::sin(CONTACT_ANGLE_RAD);

@@ -93,7 +93,7 @@ pub struct GlassLedger {
 ///
 /// A pure function of the seed and of all that acted on it, interval by interval.
 ///
-/// Error: the ledger closes to `1e-12` of what arrived.
+/// Error: the ledger closes to 1e-12 of what arrived.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Glass {
     seed: u32,

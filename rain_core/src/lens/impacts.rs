@@ -36,7 +36,7 @@ fn mean_positive(mean: f64, spread: f64) -> f64 {
 /// into the glass, −w·n, scatters with the gusts' deviation g as a normal variable X, so that even upright glass in calm
 /// rain catches some: number ∫ N(D) E[max(0, X)] dD, E[max(0, X)] = g φ(m/g) + m Φ(m/g).
 ///
-/// Error: number `2e-4`, water `2e-4` relative against a fine sum over diameters and gusts; the drops' own answer to
+/// Error: number 2e-4, water 2e-4 relative against a fine sum over diameters and gusts; the drops' own answer to
 /// gusts (large ones follow less) is left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GlassImpacts {
@@ -100,7 +100,7 @@ impl GlassImpacts {
     ///
     /// `share`: none, held in [0, 1].
     ///
-    /// Error: `5e-3` of the share. A step of width h is filled evenly where the density falls as e^(−κD): off by κh/8 of
+    /// Error: 5e-3 of the share. A step of width h is filled evenly where the density falls as e^(−κD): off by κh/8 of
     /// what lies in it, at most 0.1 of all and κh 0.4.
     #[must_use]
     pub fn diameter_at(&self, share: f64) -> f64 {
@@ -121,7 +121,7 @@ impl GlassImpacts {
     ///
     /// `share`: none, held in [0, 1].
     ///
-    /// Error: `2e-2` relative against a fine sum.
+    /// Error: 2e-2 relative against a fine sum.
     #[must_use]
     pub fn covered_below_per_s(&self, share: f64) -> f64 {
         let share = clamped(share, 0.0, 1.0);

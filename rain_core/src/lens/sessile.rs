@@ -35,7 +35,7 @@ fn cap_factor() -> f64 {
 ///
 /// `radius_m`: m, held in [0, 1]; NaN counts as 0.
 ///
-/// Error: `1e-12` relative against the sum of its slices.
+/// Error: 1e-12 relative against the sum of its slices.
 #[must_use]
 pub fn cap_volume_m3(radius_m: f64) -> f64 {
     let r = clamped(radius_m, 0.0, 1.0);
@@ -46,7 +46,7 @@ pub fn cap_volume_m3(radius_m: f64) -> f64 {
 ///
 /// `volume_m3`: m³, held in [0, 1]; NaN counts as 0.
 ///
-/// Error: `1e-14` relative, there and back.
+/// Error: 1e-14 relative, there and back.
 #[must_use]
 pub fn cap_radius_m(volume_m3: f64) -> f64 {
     ops::cbrt(clamped(volume_m3, 0.0, 1.0) / cap_factor())
@@ -57,7 +57,7 @@ pub fn cap_radius_m(volume_m3: f64) -> f64 {
 ///
 /// `radius_m`: m, held in [0, 1]; NaN counts as 0.
 ///
-/// Error: `1e-15` relative to the formula; angles of real glass scatter by 10°, the force by a third.
+/// Error: 1e-14 relative to the formula; angles of real glass scatter by 10°, the force by a third.
 #[must_use]
 pub fn retention_n(radius_m: f64) -> f64 {
     WATER_SURFACE_TENSION * 2.0 * clamped(radius_m, 0.0, 1.0) * HYSTERESIS
@@ -68,7 +68,7 @@ pub fn retention_n(radius_m: f64) -> f64 {
 ///
 /// `radius_m`: m, held in [0, 1]; `speed_m_s`: of the free stream, m/s, held in [0, 100]; NaN counts as 0.
 ///
-/// Error: `1e-15` relative to the formula; drag coefficient 1 and the boundary layer's share are choices.
+/// Error: 1e-14 relative to the formula; drag coefficient 1 and the boundary layer's share are choices.
 #[must_use]
 pub fn air_push_n(radius_m: f64, speed_m_s: f64) -> f64 {
     let (r, u) = (clamped(radius_m, 0.0, 1.0), clamped(speed_m_s, 0.0, 100.0));
@@ -83,7 +83,7 @@ pub fn air_push_n(radius_m: f64, speed_m_s: f64) -> f64 {
 /// `net_n`: what is left of the force above the hold, N, held in [0, 1]; `radius_m`: m, held in [1e-5, 1]; NaN counts as
 /// the lower end.
 ///
-/// Error: `1e-15` relative to the formula, held at 2 m/s; measured drops of 3 to 4 mm run at 0.1 to 0.3 m/s.
+/// Error: 1e-14 relative to the formula, held at 2 m/s; measured drops of 3 to 4 mm run at 0.1 to 0.3 m/s.
 #[must_use]
 pub fn running_speed_m_s(net_n: f64, radius_m: f64) -> f64 {
     let resist = 3.0 * PI * WATER_VISCOSITY * WEDGE_LOG * clamped(radius_m, 1e-5, 1.0) / CONTACT_ANGLE_RAD;
@@ -101,7 +101,7 @@ impl RunningForce {
     /// On a drop with footprint radius `radius_m` (m): weight by the part of gravity along the glass (m/s²) and the push
     /// of the air along it (m/s).
     ///
-    /// Error: `1e-14` relative to the two formulas.
+    /// Error: 1e-14 relative to the two formulas.
     #[must_use]
     pub fn new(radius_m: f64, gravity_m_s2: [f64; 2], air_m_s: [f64; 2]) -> Self {
         let mass = WATER_DENSITY * cap_volume_m3(radius_m);
@@ -137,7 +137,7 @@ impl RunningForce {
 /// `radius_m`: m, held in [0, 1]; `deficit_kg_m3`: vapour that the air lacks, kg/m³, held in [0, 1]; `speed_m_s` as in
 /// [`air_push_n`]; `dt_s`: s ≥ 0. NaN counts as 0.
 ///
-/// Error: `1e-6` relative in still air against small steps of the law, `1e-2` in a stream for steps that take off less
+/// Error: 1e-6 relative in still air against small steps of the law, 1e-2 in a stream for steps that take off less
 /// than a tenth of r.
 #[must_use]
 pub fn radius_after_drying_m(radius_m: f64, deficit_kg_m3: f64, speed_m_s: f64, dt_s: f64) -> f64 {

@@ -92,7 +92,7 @@ pub struct Wipers {
 impl Wipers {
     /// Where the arms are on their way: 0 at rest, 1 at the far end, (1 − cos 2πt/T)/2 in between. Units: none.
     ///
-    /// Error: `1e-12` against the formula; real linkages are a few percent faster half-way.
+    /// Error: 1e-12 against the formula; real linkages are a few percent faster half-way.
     #[must_use]
     pub fn swing(&self) -> f64 {
         match self.mode.cycle_s() {
@@ -118,7 +118,7 @@ impl Wipers {
     ///
     /// `place_m`: on the glass, m. A place is passed when the swing reaches its own angle, twice in each cycle.
     ///
-    /// Error: `1e-9` s against a search in small steps, beyond 0.01 of the ends of the swing.
+    /// Error: 1e-9 s against a search in small steps, beyond 0.01 of the ends of the swing.
     #[must_use]
     pub fn since_s(&self, place_m: [f64; 2]) -> Option<f64> {
         let [period, moving] = self.mode.cycle_s()?;
