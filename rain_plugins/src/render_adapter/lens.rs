@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use bevy::math::Vec4Swizzles as _;
 use bevy::prelude::*;
 use bevy::render::Extract;
 use bevy::render::camera::ExtractedCamera;
