@@ -329,8 +329,13 @@ impl Glass {
 
     fn wipe(&mut self, mode: WiperMode, dt: f64) {
         let wipers = &mut self.wipers;
-        if wipers.mode != mode && wipers.rests() {
-            (wipers.mode, wipers.time_s) = (mode, 0.0);
+        if wipers.mode != mode {
+            let ends = wipers.mode.cycle_s().is_none_or(|[period, _]| {
+                wipers.rests() || (wipers.time_s / period).floor() < ((wipers.time_s + dt) / period).floor()
+            });
+            if ends {
+                (wipers.mode, wipers.time_s) = (mode, 0.0);
+            }
         }
         if wipers.mode == WiperMode::Off {
             return;

@@ -172,6 +172,17 @@ fn wipers_clear_what_they_sweep_and_covered_glass_dries() {
     let after = swept(&glass);
     assert!(before.0 > 100 && after.0 == 0, "{before:?}, then {after:?}");
     assert!(after.1 > 0, "beside the arc drops stay");
+    // Switched off, they end their cycle first.
+    let off = GlassForcing {
+        mode: WiperMode::Off,
+        ..dry
+    };
+    glass.advance(&SHAPE, &off, 1.0 / 32.0);
+    assert!(!glass.wipers.rests() && glass.wipers.mode == WiperMode::Fast);
+    for _ in 0..30 {
+        glass.advance(&SHAPE, &off, 1.0 / 32.0);
+    }
+    assert!(glass.wipers.rests() && glass.wipers.mode == WiperMode::Off);
     // Under a roof nothing comes, and what is there dries.
     let roofed = GlassForcing {
         exposure: 0.0,
