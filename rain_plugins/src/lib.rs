@@ -23,7 +23,8 @@
 //! |---|---|
 //! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
 //! | [`cover::CoverPlugin`] | what stops rain |
-//! | [`rainfall::RainfallPlugin`] | streaks near each marked camera |
+//! | [`haze::HazePlugin`] | haze of rain, far showers, glow of lamps |
+//! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
 //! | [`lens::LensPlugin`] | drops on the glass of cameras that ask for it |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
@@ -31,6 +32,7 @@
 //! | [`render_adapter::RainRenderPlugin`] | the passes |
 
 pub mod cover;
+pub mod haze;
 pub mod lens;
 pub mod rainfall;
 pub mod render_adapter;
@@ -61,6 +63,7 @@ impl PluginGroup for RainPlugins {
             .add(render_adapter::RainRenderPlugin)
             .add(cover::CoverPlugin)
             .add(rainfall::RainfallPlugin)
+            .add(haze::HazePlugin)
             .add(splash::SplashPlugin)
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
@@ -95,8 +98,9 @@ impl Plugin for RainSchedulePlugin {
 /// What users type.
 pub mod prelude {
     pub use crate::cover::CoverSettings;
+    pub use crate::haze::{ArtistFog, HazeMask, HazePlugin, HazeSettings};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
-    pub use crate::rainfall::RainView;
+    pub use crate::rainfall::{CardSettings, RainView};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::splash::{SplashMask, SplashSettings};

@@ -18,8 +18,14 @@ pub enum PassName {
     Waves,
     /// The mirrored view.
     Reflection,
+    /// Haze of rain.
+    Haze,
+    /// Streak textures, made once.
+    StreakTextures,
     /// Splashes of rain.
     Splash,
+    /// Cards of many drops, beyond the single streaks.
+    Lattice,
     /// Streaks near the eye.
     Rainfall,
     /// Measurement masks (only when asked for).
@@ -38,7 +44,10 @@ impl PassName {
             Self::Ripples => "ripples",
             Self::Waves => "waves",
             Self::Reflection => "reflection",
+            Self::Haze => "haze",
+            Self::StreakTextures => "streak_textures",
             Self::Splash => "splash",
+            Self::Lattice => "lattice",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
             Self::Lens => "lens",
@@ -67,6 +76,8 @@ pub enum SkipReason {
     NothingMoved,
     /// No camera carries a `RainView`, or it is inactive.
     NoView,
+    /// Too little to be seen.
+    Negligible,
     /// Turned off by a setting.
     Disabled,
     /// The view's projection or sample count is not supported by the pass.
@@ -87,6 +98,7 @@ impl SkipReason {
             Self::Indoors => "indoors",
             Self::NothingMoved => "nothing moved",
             Self::NoView => "no view",
+            Self::Negligible => "negligible",
             Self::Disabled => "disabled",
             Self::Unsupported => "unsupported view",
         }
@@ -102,7 +114,7 @@ pub struct PassRecord {
     pub skipped: BTreeMap<SkipReason, u64>,
 }
 
-/// Frames whose drop counts are kept.
+/// Frames whose counts of drops and cards are kept.
 pub const KEPT_FRAMES: usize = 16_384;
 
 /// What the rain passes did: shared by the main and the render world.
@@ -118,6 +130,8 @@ pub struct Report {
     pub passes: BTreeMap<PassName, PassRecord>,
     /// Drops handed to the GPU in the latest frames that drew rain, at most [`KEPT_FRAMES`] of them.
     pub drops: VecDeque<u32>,
+    /// Cards handed to the GPU in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
+    pub cards: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
     pub gpu_memory_bytes: usize,
 }
@@ -146,11 +160,12 @@ impl RainReport {
 
     /// Notes how many drops a frame drew.
     pub fn drops(&self, count: u32) {
-        let mut report = self.lock();
-        if report.drops.len() == KEPT_FRAMES {
-            report.drops.pop_front();
-        }
-        report.drops.push_back(count);
+        keep(&mut self.lock().drops, count);
+    }
+
+    /// Notes how many cards a frame drew.
+    pub fn cards(&self, count: u32) {
+        keep(&mut self.lock().cards, count);
     }
 
     /// Notes the GPU memory in use.
@@ -174,4 +189,12 @@ impl RainReport {
     pub fn reset(&self) {
         *self.lock() = Report::default();
     }
+}
+
+/// The latest counts.
+fn keep(counts: &mut VecDeque<u32>, count: u32) {
+    if counts.len() == KEPT_FRAMES {
+        counts.pop_front();
+    }
+    counts.push_back(count);
 }

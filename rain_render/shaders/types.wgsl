@@ -37,6 +37,18 @@ struct RainfallClass {
     diameter: vec4<f32>,
 }
 
+// A point or spot light.
+struct LampParams {
+    // Relative to the eye, m; w: radius, m.
+    place: vec4<f32>,
+    // Illuminance at a metre, exposed; w: cosine of the angle up to which it is whole, -1 for a point light.
+    intensity: vec4<f32>,
+    // Where a spot looks; w: cosine of the angle at which it ends, -2 for a point light.
+    direction: vec4<f32>,
+    // x: 1 / square of the range, 1/m2.
+    limits: vec4<f32>,
+}
+
 struct RainfallView {
     // Eye-relative world to clip, at the end of the exposure.
     clip_from_eye: mat4x4<f32>,
@@ -52,6 +64,8 @@ struct RainfallView {
     sun: vec4<f32>,
     // How far the container reaches ahead of the eye, m; w unused.
     lead: vec4<f32>,
+    // A drop's size over its own by distance d: x + y d + z d2; w: d for a metre.
+    size: vec4<f32>,
     // Width and height, px.
     viewport: vec2<f32>,
     // Focal length, px.
@@ -67,11 +81,12 @@ struct RainfallView {
     // Fade against the scene over this distance, m; 0 = hard depth test only.
     soft: f32,
     drops: u32,
-    pad_a: u32,
+    lamps: u32,
     pad_b: u32,
     pad_c: u32,
     cover: CoverParams,
     classes: array<RainfallClass, 12>,
+    lamp: array<LampParams, 16>,
 }
 
 // See `DropRecord` in rain_core.
@@ -380,16 +395,6 @@ struct TileDrop {
     share: f32,
 }
 
-// A point or spot light.
-struct LampParams {
-    // Relative to the eye, m; w: radius, m.
-    place: vec4<f32>,
-    // Illuminance at a metre, exposed; w: cosine of the angle up to which it is whole, -1 for a point light.
-    intensity: vec4<f32>,
-    // Where a spot looks; w: cosine of the angle at which it ends, -2 for a point light.
-    direction: vec4<f32>,
-}
-
 // A view of the lattice.
 struct LatticeParams {
     // Eye-relative world to clip.
@@ -518,6 +523,55 @@ struct SplashDraw {
     found: u32,
     // Parts noted so far in this frame; 0 between frames.
     noted: atomic<u32>,
+}
+
+// A lamp that glows in the haze.
+struct HazeLamp {
+    // From the eye, m; w: radius, m.
+    place: vec4<f32>,
+    // Luminous intensity, exposed, cd; w: cosine of the outer half angle, -1 where it shines all around.
+    light: vec4<f32>,
+    // Where it shines; w: cosine of the inner half angle.
+    axis: vec4<f32>,
+}
+
+// A view of haze. Positions are relative to the eye.
+struct HazeView {
+    eye_from_clip: mat4x4<f32>,
+    clip_from_eye: mat4x4<f32>,
+    // Scale of the environment map; w: its highest level.
+    environment: vec4<f32>,
+    // Even light around, exposed.
+    ambient: vec4<f32>,
+    sun_direction: vec4<f32>,
+    sun: vec4<f32>,
+    // Where the view looks; w: near plane, m.
+    forward: vec4<f32>,
+    // Corner and size of the view in the target, px.
+    viewport: vec4<f32>,
+    // The artists' fog: colour, times the luminance around; w: how much of its colour it has lost.
+    fog: vec4<f32>,
+    // Extinction of the rain at the eye, or everywhere, 1/m.
+    extinction: f32,
+    // Extinction over cross-section, Q.
+    efficiency: f32,
+    // Base of the cloud over the eye, and the longest way, m.
+    cloud: f32,
+    limit: f32,
+    // The artists' fog, 1/m; below 0: the physical haze.
+    artist: f32,
+    // 1: the artists' fog has a colour of its own.
+    coloured: f32,
+    // 1: areas divide the rain.
+    uneven: f32,
+    lamps: u32,
+    // Areas' grid: first azimuth and step, rad; scale of its knots; knots of rates for each unit of ln.
+    grid: vec4<f32>,
+    // Metres of rain that what is drawn stands for, by distance.
+    drawn: array<vec4<f32>, 16>,
+    // ln of the extinction, 1/m, by rate.
+    rates: array<vec4<f32>, 16>,
+    lamp: array<HazeLamp, 16>,
 }
 
 // A view through a glass in the rain. Places on the glass: m from where the view's axis meets it, x right, y up.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use rain_core::haze::{FIRST_RATE_MM_H, FOG_TABLE_END_M, FOG_TABLE_KNOTS, RATE_KNOTS};
 use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
 use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
@@ -32,7 +33,9 @@ pub const LIBRARIES: &[Library] = library![
     "cover",
     "streak",
     "drop_light",
+    "lamp_light",
     "surroundings",
+    "haze",
     "wetness",
     "standing_water",
     "ground_memory",
@@ -40,6 +43,7 @@ pub const LIBRARIES: &[Library] = library![
     "rut_lanes",
     "placed_water",
     "film_waves",
+    "beads",
     "artist_look",
     "slopes",
     "waves",
@@ -84,6 +88,8 @@ pub const PASSES: &[Pass] = passes![
     "lattice_draw",
     "splash_make",
     "splash_draw",
+    "haze_areas",
+    "haze",
     "lens"
 ];
 
@@ -103,6 +109,15 @@ pub const WIND_DIRECTIONS: f64 = 24.0;
 /// After this time the wind's waves repeat. Units: s, a whole number.
 pub const WAVE_PERIOD_S: f64 = 4096.0;
 
+/// Directions on the ground of the grid of areas' haze.
+pub const HAZE_AZIMUTHS: u32 = 512;
+
+/// Intervals of distance of that grid, each a constant factor longer than the one before but for the first ones.
+pub const HAZE_INTERVALS: u32 = 128;
+
+/// Distance at which those intervals begin to grow. Units: m.
+pub const HAZE_FIRST_M: f64 = 4.0;
+
 /// Constants that shaders share with `rain_core`.
 #[must_use]
 pub fn constants() -> String {
@@ -121,8 +136,19 @@ pub fn constants() -> String {
         ("RAIN_SPLASH_CELL_M", SPLASH_CELL_M),
         ("RAIN_SPLASH_SLOT_S", SPLASH_SLOT_S),
         ("RAIN_SPLASH_SLOTS", f64::from(SPLASH_SLOTS)),
+        ("RAIN_FOG_END_M", FOG_TABLE_END_M),
+        ("RAIN_FOG_KNOTS", FOG_TABLE_KNOTS as f64),
+        ("RAIN_FIRST_RATE_MM_H", FIRST_RATE_MM_H),
+        ("RAIN_HAZE_FIRST_M", HAZE_FIRST_M),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
+    }
+    for (name, value) in [
+        ("RAIN_RATE_KNOTS", RATE_KNOTS as u32),
+        ("RAIN_HAZE_AZIMUTHS", HAZE_AZIMUTHS),
+        ("RAIN_HAZE_INTERVALS", HAZE_INTERVALS),
+    ] {
+        let _ = writeln!(out, "const {name}: u32 = {value}u;");
     }
     out
 }
@@ -148,4 +174,24 @@ pub(crate) fn shader(device: &wgpu::Device, pass: &str) -> wgpu::ShaderModule {
         label: Some(pass),
         source: wgpu::ShaderSource::Wgsl(module(pass).into()),
     })
+}
+
+/// The module of the pass `haze` for a scene's depth with several samples: every sample is shaded.
+#[must_use]
+pub fn haze_of_samples() -> String {
+    let mut source = module("haze");
+    for (single, several) in [
+        (
+            "var scene_depth: texture_depth_2d;",
+            "var scene_depth: texture_depth_multisampled_2d;",
+        ),
+        (
+            "fn colour(in: HazeVertex)",
+            "fn colour(in: HazeVertex, @builtin(sample_index) which: u32)",
+        ),
+        ("    let which = 0u;\n", ""),
+    ] {
+        source = source.replace(single, several);
+    }
+    source
 }

@@ -50,6 +50,7 @@ pub struct RainfallView {
     pub sun_direction: [f32; 4],
     pub sun: [f32; 4],
     pub lead: [f32; 4],
+    pub size: [f32; 4],
     pub viewport: [f32; 2],
     pub focal: f32,
     pub near: f32,
@@ -58,11 +59,12 @@ pub struct RainfallView {
     pub kappa: f32,
     pub soft: f32,
     pub drops: u32,
-    pub pad_a: u32,
+    pub lamps: u32,
     pub pad_b: u32,
     pub pad_c: u32,
     pub cover: CoverParams,
     pub classes: [RainfallClass; CLASS_COUNT],
+    pub lamp: [LampParams; MAX_LAMPS],
 }
 
 /// A projected streak; written and read by the GPU only.
@@ -320,6 +322,7 @@ pub struct LampParams {
     pub place: [f32; 4],
     pub intensity: [f32; 4],
     pub direction: [f32; 4],
+    pub limits: [f32; 4],
 }
 
 /// A view of the lattice.
@@ -414,6 +417,42 @@ pub struct SplashDraw {
     pub noted: u32,
 }
 
+/// A lamp that glows in the haze.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct HazeLamp {
+    pub place: [f32; 4],
+    pub light: [f32; 4],
+    pub axis: [f32; 4],
+}
+
+/// A view of haze.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct HazeView {
+    pub eye_from_clip: [[f32; 4]; 4],
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub forward: [f32; 4],
+    pub viewport: [f32; 4],
+    pub fog: [f32; 4],
+    pub extinction: f32,
+    pub efficiency: f32,
+    pub cloud: f32,
+    pub limit: f32,
+    pub artist: f32,
+    pub coloured: f32,
+    pub uneven: f32,
+    pub lamps: u32,
+    pub grid: [f32; 4],
+    pub drawn: [[f32; 4]; 16],
+    pub rates: [[f32; 4]; 16],
+    pub lamp: [HazeLamp; 16],
+}
+
 /// A view through a glass in the rain.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
@@ -462,8 +501,8 @@ pub fn layouts() -> Vec<Layout> {
     vec![
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
-        layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead,
-            viewport, focal, near, exposure, contrast, kappa, soft, drops, pad_a, pad_b, pad_c, cover, classes),
+        layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead, size,
+            viewport, focal, near, exposure, contrast, kappa, soft, drops, lamps, pad_b, pad_c, cover, classes, lamp),
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
@@ -485,7 +524,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(StreakTile: texels, first, drops, pad_a, path, unit, steps, pad_b),
         layout!(StreakLevel: side, first, above, words, row, pad_a, pad_b, pad_c),
         layout!(TileDrop: x, y, diameter, share),
-        layout!(LampParams: place, intensity, direction),
+        layout!(LampParams: place, intensity, direction, limits),
         layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
             lamps, pad_a, pad_b, pad_c, cover, lamp),
         layout!(Card: centre, facing, turn, place, layers),
@@ -498,5 +537,8 @@ pub fn layouts() -> Vec<Layout> {
             pad_b, pad_c),
         layout!(LensDrop: place, along, radius, stretch, key, pad_a),
         layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
+        layout!(HazeLamp: place, light, axis),
+        layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward, viewport, fog,
+            extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, drawn, rates, lamp),
     ]
 }

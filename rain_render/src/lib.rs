@@ -8,6 +8,8 @@ mod bindings;
 pub mod compose;
 pub mod cover;
 pub mod gpu_types;
+pub mod haze;
+mod lamps;
 pub mod lattice;
 pub mod lens;
 pub mod masks;

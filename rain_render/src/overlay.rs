@@ -12,8 +12,6 @@ pub(crate) struct OverlayKey {
     samples: u32,
     /// Coverage instead of colour.
     coverage: bool,
-    /// The scene's depth is read in the shader, not tested.
-    reads_depth: bool,
 }
 
 impl OverlayKey {
@@ -23,7 +21,6 @@ impl OverlayKey {
             format,
             samples,
             coverage: false,
-            reads_depth: false,
         }
     }
 
@@ -33,13 +30,7 @@ impl OverlayKey {
             format: COVERAGE_FORMAT,
             samples,
             coverage: true,
-            reads_depth: false,
         }
-    }
-
-    /// The same with the scene's depth read in the shader, or tested.
-    pub fn reading_depth(self, reads_depth: bool) -> Self {
-        Self { reads_depth, ..self }
     }
 }
 
@@ -105,11 +96,7 @@ impl Overlay {
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(false),
-                depth_compare: Some(if key.reads_depth {
-                    wgpu::CompareFunction::Always
-                } else {
-                    wgpu::CompareFunction::GreaterEqual
-                }),
+                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),

@@ -28,6 +28,15 @@ fn every_module_is_valid() {
 }
 
 #[test]
+fn haze_of_several_samples_is_valid() {
+    let source = compose::haze_of_samples();
+    assert!(source.contains("texture_depth_multisampled_2d") && source.contains("sample_index"));
+    Validator::new(ValidationFlags::all(), Capabilities::MULTISAMPLED_SHADING)
+        .validate(&parse(&source))
+        .unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
+}
+
+#[test]
 fn libraries_have_no_bindings_and_are_all_listed() {
     for library in compose::LIBRARIES {
         assert!(!library.source.contains("@group"), "{}", library.name);

@@ -122,6 +122,7 @@ fn volume() -> RainViewVolume {
 fn fill(plan: &LatticePlan, volume: &RainViewVolume, spectrum: &Spectrum, seconds: f64, cards: &mut Vec<Card>) {
     plan.fill(
         &LatticeView {
+            local: None,
             volume,
             spectrum,
             motion: &FieldMotion::default().after(seconds),

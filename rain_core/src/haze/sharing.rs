@@ -262,7 +262,10 @@ impl HazeSharing {
 }
 
 /// Entries of a [`FogTable`].
-const TABLE: usize = 64;
+pub const FOG_TABLE_KNOTS: usize = 64;
+const TABLE: usize = FOG_TABLE_KNOTS;
+/// Distance from which on nothing is drawn any more, the last entry of a [`FogTable`]. Units: m.
+pub const FOG_TABLE_END_M: f64 = MID_END_M[1];
 
 /// Optical depth of the fog as a table over distance in single precision, for drops whose range depends on their own
 /// diameter. 264 bytes; nothing is allocated.
@@ -317,6 +320,19 @@ impl FogTable {
         Ok(Self {
             depth,
             slope_per_m: total as f32,
+        })
+    }
+
+    /// Metres of the whole rain that what is drawn stands for, at s = 36 t² m, t even in [0, 1]: the whole depth less the
+    /// fog's, over the extinction. Units: m. 0 where it is dry.
+    #[must_use]
+    pub fn drawn_m(&self) -> [f32; FOG_TABLE_KNOTS] {
+        core::array::from_fn(|i| {
+            if self.slope_per_m > 0.0 {
+                (distance_at(i) as f32 - self.depth[i] / self.slope_per_m).max(0.0)
+            } else {
+                0.0
+            }
         })
     }
 

@@ -8,7 +8,8 @@ use glam::swizzles::Vec3Swizzles;
 use glam::{DVec3, IVec3, Vec3, Vec4};
 
 use super::classes::{SizeClass, visible_range_m};
-use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_place, for_each_drop};
+use super::detail::DetailLaw;
+use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
 use super::follow::{Follow, FollowSettings};
 use super::local::{CellRain, LocalRain};
 use super::spectrum::Spectrum;
@@ -145,6 +146,33 @@ pub struct ClassPlacement {
     pub velocity_m_s: Vec3,
 }
 
+/// What leaves drops out of a container, beside range and view.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Thinning<'a> {
+    /// The rain from place to place: a drop is there if it says so at the drop's own place. `None`: everywhere the rain of
+    /// the spectrum.
+    pub local: Option<&'a LocalRain<'a>>,
+    /// A container that follows the view: a drop is there as far as it is inside. `None`: there is none.
+    pub region: Option<(&'a Follow, &'a FollowSettings)>,
+    /// The law by which fewer, larger drops stand for the field, by distance over [`RANGE_CAP_M`]; whoever draws them
+    /// scales them ([`DetailLaw::size`]). `None`: every drop, of its own size.
+    pub detail: Option<DetailLaw>,
+}
+
+/// Share over which a drop fades that a law is about to leave out, of the law's number.
+const FADE: f32 = 0.1;
+
+/// Presence of a drop with a mark in [0, 1] where a share of the drops is kept.
+///
+/// Error: its mean over marks is the share, up to 1/(1 + FADE/2); 0.0125 less at a share of 1.
+fn thinned(share: f32, mark: f32) -> f32 {
+    if share > 0.0 {
+        ((share * (1.0 + 0.5 * FADE) - mark) / (share * FADE)).clamp(0.0, 1.0)
+    } else {
+        0.0
+    }
+}
+
 /// The drops of one view and what is needed to place them. Kept between frames so that nothing is allocated.
 #[derive(Debug, Default, Clone)]
 pub struct Container {
@@ -178,12 +206,10 @@ impl Container {
         kappa: f64,
         max_drops: usize,
     ) -> bool {
-        self.fill_local(seed, spectrum, motion, view, kappa, max_drops, None, None)
+        self.fill_local(seed, spectrum, motion, view, kappa, max_drops, &Thinning::default())
     }
 
-    /// [`Container::fill`] where the rain rate changes from place to place: a drop is there if `local` says so at its own
-    /// place, and as far as it is inside a container that follows the view, where one is given. `None`: the rain of
-    /// `spectrum` everywhere, bit for bit as [`Container::fill`].
+    /// [`Container::fill`] with fewer drops: see [`Thinning`]. With its default bit for bit as [`Container::fill`].
     ///
     /// Error: as [`Container::fill`]; presence 1e-2 on a drop's own soft edge.
     #[must_use = "false says that drops were left out"]
@@ -195,9 +221,9 @@ impl Container {
         view: &RainViewVolume,
         kappa: f64,
         max_drops: usize,
-        local: Option<&LocalRain>,
-        region: Option<(&Follow, &FollowSettings)>,
+        thinning: &Thinning,
     ) -> bool {
+        let local = thinning.local;
         self.records.clear();
         self.classes.clear();
         (self.cells_visited, self.cells_kept) = (0, 0);
@@ -224,7 +250,7 @@ impl Container {
                 let relative = placement.velocity_m_s - eye_velocity.as_vec3();
                 let streak = relative.length() * view.exposure_s as f32;
                 complete &= self.fill_class(
-                    seed, k, class, spectrum, &placement, view, &range, lead, streak, max_drops, local, region,
+                    seed, k, class, spectrum, &placement, view, &range, lead, streak, max_drops, thinning,
                 );
             }
         }
@@ -243,9 +269,9 @@ impl Container {
         lead: Vec3,
         streak: f32,
         max_drops: usize,
-        local: Option<&LocalRain>,
-        region: Option<(&Follow, &FollowSettings)>,
+        thinning: &Thinning,
     ) -> bool {
+        let Thinning { local, region, detail } = *thinning;
         let everywhere = CellRain::Even(Threshold::new(class, spectrum));
         let eye = if view.eye_m.is_finite() {
             view.eye_m
@@ -304,6 +330,13 @@ impl Container {
                         let presence = match region {
                             Some((follow, settings)) => {
                                 presence * follow.weight(settings, eye + position.as_dvec3()) as f32
+                            }
+                            None => presence,
+                        };
+                        let presence = match detail {
+                            Some(law) => {
+                                let d = f64::from(position.length()) / RANGE_CAP_M;
+                                presence * thinned(law.number(d) as f32, unit_f32(drop_marks(key, index)[2]))
                             }
                             None => presence,
                         };

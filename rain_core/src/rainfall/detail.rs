@@ -80,6 +80,17 @@ impl DetailLaw {
         }
     }
 
+    /// [`DetailLaw::size`] as c₀ + c₁ d + c₂ d², for shaders.
+    #[must_use]
+    pub fn size_terms(self) -> [f32; 3] {
+        match self {
+            Self::OpticalDepth => [1.0, 1.0, 0.0],
+            Self::Quadratic { least, most } | Self::Gaussian { least, most } => {
+                [least as f32, 0.0, (most - least) as f32]
+            }
+        }
+    }
+
     /// Coverage of the thinned and scaled field at `d` against the full one: n s². Units: none.
     ///
     /// Error: 1e-14 relative; of the default exactly 1 within that.

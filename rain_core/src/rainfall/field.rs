@@ -50,7 +50,7 @@ pub fn cell_key(seed: u64, class: u32, cell: IVec3) -> [u32; 3] {
     ])
 }
 
-/// Hash of drop `index`: [rank increment, diameter, unused].
+/// Hash of drop `index`: [rank increment, diameter, order in which laws of detail leave drops out].
 ///
 /// Error: exact, the same integers as the published hash in 128-bit arithmetic.
 #[must_use]

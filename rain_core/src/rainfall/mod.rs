@@ -36,7 +36,7 @@ pub use classes::{CLASS_CELL_M, CLASS_COUNT, CLASS_EDGES_MM, CLASS_SPEEDS_M_S, S
 pub use column::{ColumnDrop, column_drop, fract};
 pub use container::{
     ClassPlacement, Container, DrawRange, DropRecord, FADE_END, LEAD_CAP_M, LEAD_TIME_S, RANGE_CAP_M, RainViewVolume,
-    expected_drops, quality_for_budget,
+    Thinning, expected_drops, quality_for_budget,
 };
 pub use detail::DetailLaw;
 pub use drop_sizes::{DropSizes, MAX_BLEND, RainKind, SizeLaw, UnknownRainKind};
@@ -50,8 +50,8 @@ pub use gamma::{DEFAULT_GAMMA_SHAPE, GammaClimate, GammaSpectrum};
 pub use impacts::measured_energy_j_m2_mm;
 pub(crate) use impacts::turning;
 pub use lattice::{
-    Card, CardCounts, CardHit, Lamp, LatticeLevel, LatticePlan, LatticeSettings, LatticeSharing, LatticeView,
-    MAX_CARD_SAMPLES, MAX_LAMPS, pitch_weight,
+    Card, CardCounts, CardHit, Lamp, LatticeLevel, LatticePlan, LatticeRates, LatticeSettings, LatticeSharing,
+    LatticeView, MAX_CARD_SAMPLES, MAX_LAMPS, pitch_weight,
 };
 pub use local::{LocalRain, RateLadder};
 pub use oscillation::{

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `sheet_flow.rs` | kinematic sheet flow on a plane: rise, steady state, recession |
 //! | `film_step.rs` | one time step of a texel's film: rain against drain |
+//! | `beads.rs` | drops that sit on paint and glass and trickle down |
 //! | `film_waves.rs` | wavelets on a film that runs down a slope |
 //! | `road_film.rs` | water above the texture of a road, by Gallaway |
 //! | `green_ampt.rs` | infiltration by a wetting front |
@@ -27,6 +28,7 @@ pub mod ground;
 pub mod height_field;
 
 mod auto_paint;
+mod beads;
 mod film_step;
 mod film_waves;
 mod grate;
@@ -43,6 +45,7 @@ mod wet_roughness;
 mod wet_texel;
 
 pub use auto_paint::{PaintPlace, normalised_painted_depth, painted_channels, painted_depth};
+pub use beads::{BEAD_CELLS_M, BEAD_CONTACT_RAD, Beads, TRICKLE_WIDTH_M, bead_at, bead_growth, bead_slope, trickle_at};
 pub use film_step::{drained_film, drained_film_f32, fast_film_step_f32, film_step, film_step_f32};
 pub use film_waves::{
     FLOW_NOISE, FLOW_PERIOD_S, film_wave_slope, film_wave_speed_of_mm, film_wave_velocity, film_wavelets,

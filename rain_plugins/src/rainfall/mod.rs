@@ -1,11 +1,20 @@
-//! Near rain for each marked camera: the container that follows the view.
+//! Rain in the air for each marked camera: single drops in a container that follows the view, cards of many beyond.
 
+mod cards;
+mod lamps;
 mod lead;
 mod motion;
+mod settings;
 mod view;
 
+pub use cards::CardViewFrame;
+pub(crate) use cards::{CardShot, LatticeState, fill_cards};
+pub use lamps::ViewLamps;
 pub(crate) use lead::leading_view;
 pub use motion::ViewMotion;
-pub use rain_core::rainfall::{FollowSettings, FollowShape};
+pub use rain_core::rainfall::{
+    DetailLaw, FollowSettings, FollowShape, LatticeLevel, LatticeSettings, StreakTextureSettings,
+};
+pub use settings::CardSettings;
 pub use view::{MAX_CONTRAST, MAX_STREAK_BUDGET, RainView, RainViewFrame, RainfallPlugin};
 pub(crate) use view::{SoftwareAdapter, fill_containers, view_volume};

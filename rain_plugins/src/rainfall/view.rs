@@ -7,13 +7,16 @@ use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
 use rain_core::rainfall::{
-    Container, FADE_END, Follow, FollowSettings, LEAD_CAP_M, LocalRain, RANGE_CAP_M, RainViewVolume, RateLadder,
-    quality_for_budget,
+    Container, DetailLaw, FADE_END, Follow, FollowSettings, LEAD_CAP_M, LocalRain, RANGE_CAP_M, RainViewVolume,
+    RateLadder, Thinning, quality_for_budget,
 };
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
 
+use super::cards::{CardViewFrame, LatticeState, fill_cards};
+use super::lamps::{ViewLamps, choose_lamps};
 use super::motion::ViewMotion;
+use super::settings::CardSettings;
 use crate::cover::AirAroundView;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -30,7 +33,7 @@ pub const MAX_CONTRAST: f32 = 32.0;
 /// one they end at a hard depth test.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default)]
-#[require(ViewMotion, RainViewFrame)]
+#[require(ViewMotion, RainViewFrame, CardViewFrame, ViewLamps)]
 pub struct RainView {
     /// Draws rain in this view.
     pub enabled: bool,
@@ -48,6 +51,13 @@ pub struct RainView {
     /// view as far as drops are drawn singly.
     #[reflect(ignore)]
     pub container: Option<FollowSettings>,
+    /// Draws fewer single drops, and larger ones, by their distance over 15 m. Default: none, every drop as large as it is.
+    /// That keeps the optical depth, and so does [`DetailLaw::OpticalDepth`]; up to 15 m [`DetailLaw::QUADRATIC`] takes out
+    /// 30 % less light, [`DetailLaw::GAUSSIAN`] 48 % less.
+    #[reflect(ignore)]
+    pub detail: Option<DetailLaw>,
+    /// Draws the rain beyond the single drops as cards of many drops each; see [`super::CardSettings`]. Default: true.
+    pub cards: bool,
 }
 
 impl Default for RainView {
@@ -59,6 +69,8 @@ impl Default for RainView {
             exposure_s: 1.0 / 60.0,
             soft_m: 0.15,
             container: None,
+            detail: None,
+            cards: true,
         }
     }
 }
@@ -95,7 +107,17 @@ impl RainView {
         if let Some(container) = self.container {
             container.validated()?;
         }
+        if let Some(law) = self.detail {
+            law.validated()?;
+        }
         Ok(self)
+    }
+}
+
+impl RainView {
+    /// The number of streaks in force.
+    pub(super) fn budget(&self, software: SoftwareAdapter) -> u32 {
+        self.streak_budget.unwrap_or(if software.0 { 30_000 } else { 100_000 })
     }
 }
 
@@ -141,7 +163,7 @@ pub(crate) struct LocalSpectra {
     ladder: Option<RateLadder>,
 }
 
-/// Near rain: fills the containers of all [`RainView`]s.
+/// Rain in the air: fills the containers of all [`RainView`]s, and their cards.
 pub struct RainfallPlugin;
 
 impl Plugin for RainfallPlugin {
@@ -149,7 +171,14 @@ impl Plugin for RainfallPlugin {
         app.register_type::<RainView>()
             .init_resource::<SoftwareAdapter>()
             .init_resource::<AirAroundView>()
-            .add_systems(PostUpdate, fill_containers.in_set(RainViewSystems::Views));
+            .init_resource::<CardSettings>()
+            .init_resource::<LatticeState>()
+            .add_systems(
+                PostUpdate,
+                (fill_containers, choose_lamps, fill_cards)
+                    .chain()
+                    .in_set(RainViewSystems::Views),
+            );
     }
 }
 
@@ -219,28 +248,16 @@ pub(crate) fn fill_containers(
                 .rates_within(DVec2::new(eye.x, eye.z), reach, local.weather_mm_h);
             field.spectrum_at(rates[1])
         });
-        let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
-            Some(SkipReason::NoView)
-        } else if !settings.enabled || settings.streak_budget == Some(0) {
-            Some(SkipReason::Disabled)
-        } else if spectrum.intensity_mm_h <= 0.0 {
-            Some(SkipReason::NoRain)
-        } else if !matches!(projection, Projection::Perspective(_)) {
-            Some(SkipReason::Unsupported)
-        } else if air.closed_in == Some(entity) {
-            Some(SkipReason::Indoors)
-        } else {
-            None
-        };
+        let closed_in = air.closed_in == Some(entity);
+        let raining = spectrum.intensity_mm_h > 0.0;
+        let skip = not_drawn(&settings, camera, projection, raining, closed_in);
         if let Some(reason) = skip {
             report.skipped(PassName::Rainfall, reason);
             continue;
         }
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, &motion, settings.exposure_s);
-        let budget = settings
-            .streak_budget
-            .unwrap_or(if software.0 { 30_000 } else { 100_000 });
+        let budget = settings.budget(*software);
         let target = quality_for_budget(&spectrum, &volume, f64::from(budget)).max(1e-6);
         let kappa = match frame.kappa {
             // Low-passed while the view runs; at once after a pause, when nobody sees the jump.
@@ -274,8 +291,11 @@ pub(crate) fn fill_containers(
                 &volume,
                 kappa,
                 2 * budget as usize + 1024,
-                uneven.as_ref(),
-                follow.as_ref().map(|(follow, region)| (follow, region)),
+                &Thinning {
+                    local: uneven.as_ref(),
+                    region: follow.as_ref().map(|(follow, region)| (follow, region)),
+                    detail: settings.detail,
+                },
             )
         });
         if !complete {
@@ -292,6 +312,7 @@ pub(crate) fn fill_containers(
             contrast: settings.contrast,
             kappa: kappa as f32,
             soft_m: settings.soft_m,
+            detail: settings.detail,
         });
     }
     if !any {
@@ -300,10 +321,39 @@ pub(crate) fn fill_containers(
 }
 
 impl RainViewFrame {
+    /// The last valid settings.
+    pub(super) fn settings(&self) -> RainView {
+        self.settings
+    }
+
     /// A container that nobody else holds.
     fn take_spare(&mut self) -> Arc<Container> {
         let free = self.spare.iter().position(|c| Arc::strong_count(c) == 1);
         free.map(|i| self.spare.swap_remove(i)).unwrap_or_default()
+    }
+}
+
+/// Why a view draws no rain; `None`: it does.
+pub(super) fn not_drawn(
+    settings: &RainView,
+    camera: &Camera,
+    projection: &Projection,
+    raining: bool,
+    closed_in: bool,
+) -> Option<SkipReason> {
+    let size = camera.physical_viewport_size().unwrap_or_default();
+    if !camera.is_active || size.x == 0 || size.y == 0 {
+        Some(SkipReason::NoView)
+    } else if !settings.enabled || settings.streak_budget == Some(0) {
+        Some(SkipReason::Disabled)
+    } else if !raining {
+        Some(SkipReason::NoRain)
+    } else if !matches!(projection, Projection::Perspective(_)) {
+        Some(SkipReason::Unsupported)
+    } else if closed_in {
+        Some(SkipReason::Indoors)
+    } else {
+        None
     }
 }
 

@@ -19,7 +19,7 @@ use rain_render::water_map::WaterMapPlace;
 
 use super::{RainMasks, WaveLevels};
 use crate::cover::CoverMap;
-use crate::rainfall::{RainViewFrame, ViewMotion};
+use crate::rainfall::{RainViewFrame, ViewLamps, ViewMotion};
 use crate::surface::{
     GroundFilms, GroundMap, MapHandover, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages,
     WaterLevels, WaveNormalMaps, wind_slope_variance,
@@ -37,6 +37,7 @@ pub(super) struct ExtractedRainView {
     /// Prefiltered cube map and its scale to cd/m².
     pub environment: Option<(AssetId<Image>, f32)>,
     pub masks: Option<RainMasks>,
+    pub lamps: ViewLamps,
 }
 
 /// What all views share.
@@ -225,6 +226,7 @@ pub(super) fn extract_rain(
             &Camera,
             Option<&EnvironmentMapLight>,
             Option<&RainMasks>,
+            &ViewLamps,
         )>,
     >,
 ) {
@@ -271,7 +273,7 @@ pub(super) fn extract_rain(
             shown: surface.shown,
         }),
     });
-    for (entity, frame, camera, environment, masks) in &views {
+    for (entity, frame, camera, environment, masks, lamps) in &views {
         let mut entity = commands.entity(entity);
         if !camera.is_active {
             entity.remove::<ExtractedRainView>();
@@ -285,6 +287,7 @@ pub(super) fn extract_rain(
             focal_px: frame.focal_px,
             environment: environment.map(|e| (e.specular_map.id(), e.intensity)),
             masks: masks.cloned(),
+            lamps: lamps.clone(),
         });
     }
 }

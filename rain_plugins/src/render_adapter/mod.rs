@@ -5,11 +5,15 @@
 //! | `extract.rs` | main world → render world, plain data |
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
+//! | `haze.rs` | all three for haze |
+//! | `lattice.rs` | all three for cards and their streak textures |
 //! | `splash.rs` | all three for splashes |
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
+mod haze;
+mod lattice;
 mod lens;
 mod prepare;
 mod record;
@@ -85,6 +89,14 @@ macro_rules! extract_as_they_are {
 }
 
 extract_as_they_are!(RainMirrorView, RainMaskView, RainCoverView);
+
+/// Lets shaders read the depth of what a camera has drawn.
+pub(crate) fn let_depth_be_read(camera: &mut Mut<Camera3d>) {
+    let reading = TextureUsages::TEXTURE_BINDING.bits();
+    if camera.depth_texture_usages.0 & reading == 0 {
+        camera.depth_texture_usages.0 |= reading;
+    }
+}
 
 /// An image without data for a GPU-only texture.
 fn gpu_image(label: &'static str, width: u32, height: u32, format: TextureFormat, usage: TextureUsages) -> Image {
@@ -312,6 +324,9 @@ impl Plugin for RainRenderPlugin {
             .insert_resource(levels)
             .init_gpu_resource::<prepare::RainGpu>()
             .init_gpu_resource::<splash::SplashViews>()
+            .init_gpu_resource::<haze::HazeViews>()
+            .init_gpu_resource::<lattice::LatticeViews>()
+            .init_resource::<lattice::ExtractedStreaks>()
             .init_gpu_resource::<lens::LensViews>()
             .init_resource::<extract::ExtractedWaves>()
             .init_resource::<extract::ExtractedMap>()
@@ -322,13 +337,21 @@ impl Plugin for RainRenderPlugin {
                     extract::extract_waves,
                     extract::extract_map,
                     splash::extract_splashes,
+                    haze::extract_haze,
+                    lattice::extract_cards,
                     lens::extract_lenses,
                 ),
             )
             .add_systems(
                 Render,
                 (
-                    (splash::prepare_splashes, lens::prepare_lenses, prepare::prepare_rain)
+                    (
+                        haze::prepare_haze,
+                        splash::prepare_splashes,
+                        lattice::prepare_cards,
+                        lens::prepare_lenses,
+                        prepare::prepare_rain,
+                    )
                         .chain()
                         .in_set(RenderSystems::PrepareBindGroups),
                     wave_levels::show_levels.in_set(RenderSystems::Cleanup),
@@ -336,7 +359,9 @@ impl Plugin for RainRenderPlugin {
             )
             .add_systems(
                 RenderGraph,
-                (record::water_map, record::water).chain().before(camera_driver),
+                (record::water_map, record::water, lattice::streak_textures)
+                    .chain()
+                    .before(camera_driver),
             )
             .add_systems(
                 Core3d,
@@ -353,7 +378,11 @@ impl Plugin for RainRenderPlugin {
                         .after(main_opaque_pass_3d)
                         .before(main_transmissive_pass_3d)
                         .before(main_transparent_pass_3d),
-                    (splash::splash, record::rainfall)
+                    haze::haze_behind_glass
+                        .in_set(Core3dSystems::MainPass)
+                        .after(main_transmissive_pass_3d)
+                        .before(main_transparent_pass_3d),
+                    (haze::haze_over_sky, splash::splash, lattice::lattice, record::rainfall)
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),

@@ -25,6 +25,8 @@ use rain_render::water_map::{WaterMapGpu, WaterMapInput, WaterMapPasses};
 use rain_render::waves::{WaveTileGpu, WavesGpu};
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
+use super::haze::HazeViews;
+use super::lattice::LatticeViews;
 use super::lens::LensViews;
 use super::splash::SplashViews;
 use crate::report::RainReport;
@@ -324,8 +326,7 @@ pub(super) fn prepare_rain(
     images: Res<RenderAssets<GpuImage>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
-    splashes: Res<SplashViews>,
-    lenses: Res<LensViews>,
+    (splashes, hazes, cards, lenses): (Res<SplashViews>, Res<HazeViews>, Res<LatticeViews>, Res<LensViews>),
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
@@ -420,6 +421,7 @@ pub(super) fn prepare_rain(
             .prepare_pipelines(device, view.target_format, msaa.samples(), rain.masks.is_some());
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
+        let lamps = rain.lamps.seen_from(eye, camera.exposure);
         let input = RainfallInput {
             container: &rain.container,
             seed: rain.seed,
@@ -434,6 +436,7 @@ pub(super) fn prepare_rain(
                 ..shutter
             },
             lighting: view_lighting(&scene, environment, camera.exposure),
+            lamps: &lamps,
             cover: cover_at(eye.as_dvec3()),
         };
         let textures = RainfallTextures {
@@ -462,6 +465,8 @@ pub(super) fn prepare_rain(
             + gpu.water_map.as_ref().map_or(0, |map| map.memory_bytes() as usize)
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
             + splashes.memory_bytes()
+            + hazes.memory_bytes()
+            + cards.memory_bytes()
             + lenses.memory_bytes(),
     );
 }

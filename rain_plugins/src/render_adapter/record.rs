@@ -14,6 +14,7 @@ use rain_render::rainfall::{encode_coverage, encode_draw, encode_project};
 use rain_render::reflection::encode_reflection_mips;
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedWaves};
+use super::lattice::LatticeViews;
 use super::prepare::RainGpu;
 use crate::cover::RainCoverView;
 use crate::report::{PassName, RainReport};
@@ -195,6 +196,7 @@ pub(super) fn rainfall(
         &Msaa,
     )>,
     gpu: Res<RainGpu>,
+    cards: Res<LatticeViews>,
     images: Res<RenderAssets<GpuImage>>,
     report: Res<RainReport>,
     mut ctx: RenderContext,
@@ -250,8 +252,9 @@ pub(super) fn rainfall(
         cleared(&rain_mask.texture_view),
         depth,
     );
+    draw_within(&mut pass, view.viewport);
+    cards.encode_coverage(&mut pass, entity, msaa.samples());
     if let Some(view_gpu) = view_gpu {
-        draw_within(&mut pass, view.viewport);
         encode_coverage(&mut pass, &gpu.rainfall, view_gpu, msaa.samples());
     }
     drop(pass);

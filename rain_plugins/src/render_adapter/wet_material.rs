@@ -118,6 +118,7 @@ impl Plugin for WetMaterialPlugin {
                 "rut_lanes",
                 "placed_water",
                 "film_waves",
+                "beads",
                 "artist_look",
                 "ground_memory",
                 "water_map",

@@ -455,6 +455,14 @@ pub struct RainSettings {
     /// Crowns and thrown drops of splashes drawn, about; twice as many is the hard bound, 0 draws none. Domain:
     /// 0…1 000 000. Default: 8000.
     pub splash_budget: u32,
+    /// Haze of the rain, with far showers and the glow of lamps. Default: true.
+    pub haze: bool,
+    /// Height (Y) of the cloud that rain falls from; there is no haze above. Units: m. Domain: ±100 000. Default: 1000.
+    pub cloud_base_m: f64,
+    /// Gain on the glow of lamps in the haze. Units: none. Domain: [0, 100]; 1 is physical. Default: 1.
+    pub glow: f64,
+    /// Whether rain beyond the single drops is drawn, as cards of many. Default: true.
+    pub cards: bool,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -492,6 +500,10 @@ impl Default for RainSettings {
             exposure_s: 1.0 / 60.0,
             rings: Rings::default(),
             splash_budget: 8_000,
+            haze: true,
+            cloud_base_m: 1000.0,
+            glow: 1.0,
+            cards: true,
             lens: Lens::Off,
             look: WetLook::Physical,
         }

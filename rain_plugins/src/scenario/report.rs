@@ -6,13 +6,14 @@ use std::fmt::Write;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// Names of passes, in the order of a frame.
-pub const PASS_NAMES: [&str; 12] = [
+pub const PASS_NAMES: [&str; 13] = [
     "cover",
     "surface",
     "ripples",
     "waves",
     "streak_textures",
     "reflection",
+    "lattice",
     "rainfall",
     "splash",
     "canopy",

@@ -172,9 +172,12 @@ pub fn run(
 
     progress(Progress::Writing);
     let passes = pass_rows(&session);
-    let drops: Vec<u64> = session.passes().drops.iter().map(|n| u64::from(*n)).collect();
+    let drawn = session.passes();
+    let [drops, cards] =
+        [&drawn.drops, &drawn.cards].map(|counts| counts.iter().map(|n| u64::from(*n)).collect::<Vec<_>>());
     let counts = Counts {
         drops: Tally::of(&drops),
+        billboards: Tally::of(&cards),
         ..Counts::default()
     };
     let (budget, _) = record.budget(&mut session);
@@ -384,6 +387,8 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
         .map(|(name, record)| {
             let spans: &[&str] = match name.as_str() {
                 "splash" => &["rain_splash_make", "rain_splash"],
+                "haze" => &["rain_haze_areas", "rain_haze"],
+                "lattice" => &["rain_lattice"],
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
                 "water_map" => &["rain_water_map"],
                 "lens" => &["rain_lens"],

@@ -26,6 +26,7 @@ use super::path::{CameraPath, VehiclePath, wheel_angle_rad};
 use super::puddles::PartRoot;
 use super::run::RunError;
 use super::sky::{Cube, Handedness, SkyModel, generate};
+use crate::haze::HazeSettings;
 use crate::lens::{LensDrops, WindscreenWipers};
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
@@ -306,6 +307,13 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             streak_budget: Some(scenario.rain.streak_budget),
             contrast: scenario.rain.contrast as f32,
             exposure_s: scenario.rain.exposure_s as f32,
+            cards: scenario.rain.cards,
+            ..default()
+        });
+        camera.insert(HazeSettings {
+            enabled: scenario.rain.haze,
+            cloud_base_m: scenario.rain.cloud_base_m as f32,
+            glow: scenario.rain.glow as f32,
             ..default()
         });
         if environment.reflection {

@@ -46,6 +46,9 @@ pub struct SurfaceWetting {
     /// Shows this state always, whatever the weather: dry, wet, drenched or puddle (which its level faces alone can be).
     #[reflect(ignore)]
     pub state: Option<SurfaceState>,
+    /// How much drops stand on it instead of a film. Units: none. Domain: [0, 1]. `None`: as smooth as its material is,
+    /// paint and glass wholly.
+    pub beads: Option<f32>,
     /// Whether only faces that look up get wet: walls stay dry, also in slanted rain. Default: false.
     pub ground_only: bool,
 }
@@ -58,6 +61,7 @@ impl Default for SurfaceWetting {
             wetness: None,
             look: None,
             state: None,
+            beads: None,
             ground_only: false,
         }
     }
@@ -88,7 +92,13 @@ impl SurfaceWetting {
             SurfaceState::Puddle => 4.0,
         });
         let ground_only = f32::from(u8::from(self.ground_only));
-        Vec4::new(self.look.unwrap_or(look).number(), state, ground_only, 0.0)
+        let beads = self.beads.map_or(
+            -1.0,
+            |share| {
+                if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+            },
+        );
+        Vec4::new(self.look.unwrap_or(look).number(), state, ground_only, beads)
     }
 }
 

@@ -42,6 +42,19 @@ fn rain_covered(map: texture_depth_2d, cover: CoverParams, p: vec3<f32>, inverse
     return rain_through_wall(map, cover, base, p.y, slope);
 }
 
+// The same for a patch of rain metres across: one start, one correction, no walls.
+// Error: 6 % of the points around roofs otherwise than `rain_covered`.
+fn rain_patch_covered(map: texture_depth_2d, cover: CoverParams, p: vec3<f32>, inverse_speed: f32) -> bool {
+    let base = rain_cover_project(cover, p);
+    let slope = (inverse_speed - cover.inverse_speed) * cover.wind;
+    let above = p.y + 0.02;
+    let h = rain_cover_height(map, cover, base);
+    if (h > p.y + RAIN_BUILDING_HEIGHT_M) {
+        return true;
+    }
+    return h > above && rain_cover_height(map, cover, base - (h - p.y) * slope) > above;
+}
+
 // Whether a drop would have to come through a wall to a point under the map's top: the way from the point up to the
 // top's height is halved to where it passes the map's surface; what the map holds outside of there decides.
 fn rain_through_wall(map: texture_depth_2d, cover: CoverParams, base: vec2<f32>, y: f32, slope: vec2<f32>) -> bool {

@@ -24,20 +24,3 @@ fn rain_card_offset(layers: vec4<u32>, sample: u32) -> vec2<f32> {
     let h = rain_pcg3d(vec3<u32>(layers.w, sample, layers.x));
     return select(vec2<f32>(rain_unit(h.x), rain_unit(h.y)), vec2<f32>(0.0), sample == 0u);
 }
-
-// Radiance that a drop at a point sends to the eye from a lamp. Error: 1e-3 relative to the CPU's, whose arc cosine
-// is exact.
-fn rain_lamp_radiance(lamp: LampParams, point: vec3<f32>) -> vec3<f32> {
-    let way = point - lamp.place.xyz;
-    let square = dot(way, way);
-    let towards = way * inverseSqrt(max(square, 1e-12));
-    let cone = clamp(
-        (dot(towards, lamp.direction.xyz) - lamp.direction.w) / max(lamp.intensity.w - lamp.direction.w, 1e-4),
-        0.0,
-        1.0,
-    );
-    let theta = acos(clamp(-dot(towards, normalize(point)), -1.0, 1.0));
-    let shares = RAIN_DROP_TRANSMITTED * rain_drop_phase(theta) + RAIN_DROP_REFLECTED * 0.0795775;
-    let falloff = 1.0 / (square + lamp.place.w * lamp.place.w);
-    return lamp.intensity.rgb * (falloff * cone * cone * shares);
-}

@@ -11,6 +11,9 @@
 @group(0) @binding(7) var environment: texture_cube<f32>;
 @group(0) @binding(8) var environment_sampler: sampler;
 
+// Drops that a lamp makes no brighter than this, exposed, are not asked about it.
+const LEAST_LIGHT: f32 = 0.000244;
+
 struct CardVertex {
     @builtin(position) position: vec4<f32>,
     @location(0) point: vec3<f32>,
@@ -18,6 +21,10 @@ struct CardVertex {
     @location(2) @interpolate(flat) card: u32,
     // Radiance without lamps.
     @location(3) @interpolate(flat) light: vec3<f32>,
+    // Distance along the view's axis, m.
+    @location(4) axial: f32,
+    // A bit for each lamp that may show on it.
+    @location(5) @interpolate(flat) lamps: u32,
 }
 
 fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
@@ -25,6 +32,17 @@ fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
     let d = vec3<f32>(direction.x, direction.y, -direction.z);
     let level = blur * view.environment.w;
     return textureSampleLevel(environment, environment_sampler, d, level).rgb * view.environment.rgb + view.ambient.rgb;
+}
+
+// A bit for each lamp whose light somewhere in the card's cell may be seen.
+fn lamps_on(card: Card) -> u32 {
+    var found = 0u;
+    for (var i = 0u; i < view.lamps; i++) {
+        if (rain_lamp_bound(view.lamp[i], card.centre.xyz, 1.7320508 * card.centre.w) > LEAST_LIGHT) {
+            found |= 1u << i;
+        }
+    }
+    return found;
 }
 
 @vertex
@@ -39,23 +57,36 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> CardVertex {
     let theta = acos(clamp(dot(sight, view.sun_direction.xyz), -1.0, 1.0));
     var out: CardVertex;
     out.position = view.clip_from_eye * vec4<f32>(point, 1.0);
+    out.axial = out.position.w;
+    if (view.soft > 0.5) {
+        // Tested where its cell begins: what the scene hides of it as a whole is not drawn.
+        out.position.z *= out.axial / max(out.axial - card.centre.w, view.near);
+    }
     out.point = point;
     out.place = rain_card_place(card, point);
     out.card = index;
+    out.lamps = lamps_on(card);
     out.light = rain_drop_radiance(surroundings(sight, 0.55), surroundings(behind, 0.9), view.sun.rgb, theta);
     return out;
 }
 
-// Share of a card's depth that lies before the scene.
-fn before_scene(in: CardVertex, half: f32) -> f32 {
+// A pixel of a card.
+struct Seen {
+    // Share of the cell's depth that lies before the scene.
+    share: f32,
+    // Middle of that part.
+    middle: vec3<f32>,
+}
+
+fn before_scene(in: CardVertex, half: f32) -> Seen {
     if (view.soft < 0.5) {
-        return 1.0;
+        return Seen(1.0, in.point);
     }
     // Infinite reverse-Z: distance along the axis = near / depth; both grow alike along the ray.
     let scene = view.near / max(textureLoad(scene_depth, vec2<i32>(in.position.xy), 0), 1e-7);
-    let own = view.near / max(in.position.z, 1e-7);
-    let behind = (scene / own - 1.0) * length(in.point);
-    return clamp(0.5 * behind / half + 0.5, 0.0, 1.0);
+    let way = length(in.point);
+    let behind = clamp((scene / in.axial - 1.0) * way, -half, half);
+    return Seen(0.5 * behind / half + 0.5, in.point * (1.0 + 0.5 * (behind - half) / way));
 }
 
 // What a card's pictures take out of the light, by layer weights: 1 - ∏(1 - o).
@@ -63,16 +94,17 @@ fn laid_over(in: CardVertex, card: Card, lighter: f32, heavier: f32, dx: vec2<f3
     var through = 1.0;
     for (var i = 0u; i < card.layers.z; i++) {
         let at = in.place + rain_card_offset(card.layers, i);
-        let a = textureSampleGrad(streaks, streak_sampler, at, card.layers.x, dx, dy).r;
-        let b = textureSampleGrad(streaks, streak_sampler, at, card.layers.y, dx, dy).r;
-        through *= 1.0 - clamp(a * lighter + b * heavier, 0.0, 1.0);
+        // Most cards show one of the two.
+        var opacity = 0.0;
+        if (lighter > 0.0) {
+            opacity = textureSampleGrad(streaks, streak_sampler, at, card.layers.x, dx, dy).r * lighter;
+        }
+        if (heavier > 0.0) {
+            opacity += textureSampleGrad(streaks, streak_sampler, at, card.layers.y, dx, dy).r * heavier;
+        }
+        through *= 1.0 - clamp(opacity, 0.0, 1.0);
     }
     return 1.0 - through;
-}
-
-fn is_dry(card: Card, point: vec3<f32>) -> bool {
-    return rain_inside_building(cover_map, view.cover, point)
-        || rain_covered(cover_map, view.cover, point, card.facing.w);
 }
 
 @fragment
@@ -82,18 +114,21 @@ fn colour(in: CardVertex) -> @location(0) vec4<f32> {
     let card = cards[in.card];
     let gain = card.facing.z * rain_card_slant(card.facing.xy, normalize(in.point));
     let heavier = card.place.z;
-    let opacity = before_scene(in, card.centre.w)
+    let seen = before_scene(in, card.centre.w);
+    if (seen.share <= 0.0) {
+        return vec4<f32>(0.0);
+    }
+    let opacity = seen.share
         * laid_over(in, card, gain * (1.0 - heavier) * units[card.layers.x], gain * heavier * units[card.layers.y], dx, dy);
-    if (opacity < 1e-6 || is_dry(card, in.point)) {
+    if (opacity < 1e-6 || rain_patch_covered(cover_map, view.cover, seen.middle, card.facing.w)) {
         return vec4<f32>(0.0);
     }
     var light = in.light;
-    for (var i = 0u; i < view.lamps; i++) {
-        light += rain_lamp_radiance(view.lamp[i], in.point);
+    for (var left = in.lamps; left != 0u; left &= left - 1u) {
+        light += rain_lamp_radiance(view.lamp[firstTrailingBit(left)], in.point);
     }
-    let seen = mix(view.fog.rgb, light, card.place.w);
     let shown = rain_contrast(opacity, view.contrast);
-    return vec4<f32>(seen * shown, shown);
+    return vec4<f32>(mix(view.fog.rgb, light, card.place.w) * shown, shown);
 }
 
 // The share of a pixel that swept drops cover, without the share of the exposure.
@@ -104,9 +139,13 @@ fn coverage(in: CardVertex) -> @location(0) vec4<f32> {
     let card = cards[in.card];
     let gain = min(card.facing.z, 1.0) * rain_card_slant(card.facing.xy, normalize(in.point));
     let heavier = card.place.z;
-    let covered = before_scene(in, card.centre.w)
+    let seen = before_scene(in, card.centre.w);
+    if (seen.share <= 0.0) {
+        return vec4<f32>(0.0);
+    }
+    let covered = seen.share
         * laid_over(in, card, gain * (1.0 - heavier), gain * heavier, dx, dy);
-    if (covered < 1e-6 || is_dry(card, in.point)) {
+    if (covered < 1e-6 || rain_patch_covered(cover_map, view.cover, seen.middle, card.facing.w)) {
         return vec4<f32>(0.0);
     }
     return vec4<f32>(covered, 0.0, 0.0, covered);

@@ -7,16 +7,20 @@
 @group(0) @binding(4) var environment: texture_cube<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
 
-fn drop_radiance(from_eye: vec3<f32>) -> vec3<f32> {
-    return rain_drop_shine(
+fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
+    var light = rain_drop_shine(
         environment,
         environment_sampler,
         view.environment,
         view.ambient,
         view.sun_direction.xyz,
         view.sun.rgb,
-        from_eye,
+        normalize(place),
     );
+    for (var i = 0u; i < view.lamps; i++) {
+        light += rain_lamp_radiance(view.lamp[i], place);
+    }
+    return light;
 }
 
 fn to_pixels(clip: vec4<f32>) -> vec2<f32> {
@@ -72,12 +76,16 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
         tail = mix(tail, head, (near - tail.w) / (head.w - tail.w));
     }
     let distance = max(0.5 * (head.w + tail.w), near);
-    let size = diameter_mm * 1e-3 * view.focal / distance;
+    let d = min(length(p) * view.size.w, 1.0);
+    let larger = view.size.x + d * (view.size.y + d * view.size.z);
+    let size = larger * diameter_mm * 1e-3 * view.focal / distance;
     let a = to_pixels(head);
     let b = to_pixels(tail);
     let width = max(1.0, size);
     let span = max(1.0, length(b - a) + size);
-    let opacity = min(1.0, 0.7853982 * size * size / (width * span));
+    // Off the axis a flat picture draws a sphere out to an ellipse.
+    let secant = clamp(length(0.5 * (p + before)) / distance, 1.0, 4.0);
+    let opacity = min(1.0, 0.7853982 * size * size * secant / (width * span));
     out.ends = vec4<f32>(a, b);
     out.shape = vec4<f32>(
         head.z / head.w,
@@ -85,6 +93,6 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
         0.5 * width,
         weight * rain_contrast(opacity, view.contrast),
     );
-    out.light = vec4<f32>(drop_radiance(normalize(p)), weight * min(1.0, size / width));
+    out.light = vec4<f32>(drop_radiance(0.5 * (p + before)), weight * min(1.0, size / width));
     streaks[id.x] = out;
 }

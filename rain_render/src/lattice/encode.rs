@@ -20,7 +20,7 @@ pub fn encode_lattice_coverage(pass: &mut wgpu::RenderPass, gpu: &LatticeGpu, vi
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &LatticeGpu, view: &LatticeViewGpu, key: OverlayKey) {
-    let (Some(group), Some(pipeline)) = (&view.group, gpu.draw.get(key.reading_depth(view.soft))) else {
+    let (Some(group), Some(pipeline)) = (&view.group, gpu.draw.get(key)) else {
         return;
     };
     pass.set_pipeline(pipeline);

@@ -1,9 +1,10 @@
 //! Plain inputs of the pass and how they become the uniform.
 
 use glam::{Mat4, Vec3};
-use rain_core::rainfall::{Card, Lamp, MAX_LAMPS};
+use rain_core::rainfall::{Card, Lamp};
 
-use crate::gpu_types::{CoverParams, LampParams, LatticeParams};
+use crate::gpu_types::{CoverParams, LatticeParams};
+use crate::lamps;
 use crate::rainfall::Lighting;
 
 /// One view of the lattice.
@@ -21,7 +22,7 @@ pub struct LatticeInput<'a> {
     pub lighting: Lighting,
     /// Radiance of the haze before a card, exposed.
     pub fog: Vec3,
-    /// Lamps near the view; the first [`MAX_LAMPS`] count.
+    /// Lamps near the view; the first [`rain_core::rainfall::MAX_LAMPS`] count.
     pub lamps: &'a [Lamp],
     /// Cover map relative to the eye.
     pub cover: CoverParams,
@@ -30,10 +31,7 @@ pub struct LatticeInput<'a> {
 impl LatticeInput<'_> {
     /// The uniform of this view; `soft`: whether the scene's depth is there.
     pub(super) fn uniform(&self, soft: bool) -> LatticeParams {
-        let mut lamp = [bytemuck::Zeroable::zeroed(); MAX_LAMPS];
-        for (slot, lamp) in lamp.iter_mut().zip(self.lamps) {
-            *slot = LampParams::from(lamp);
-        }
+        let (lamp, lamps) = lamps::slots(self.lamps);
         LatticeParams {
             clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
             environment: Vec3::splat(self.lighting.environment_scale)
@@ -47,22 +45,12 @@ impl LatticeInput<'_> {
             contrast: self.contrast,
             soft: f32::from(u8::from(soft)),
             cards: self.cards.len() as u32,
-            lamps: self.lamps.len().min(MAX_LAMPS) as u32,
+            lamps,
             pad_a: 0,
             pad_b: 0,
             pad_c: 0,
             cover: self.cover,
             lamp,
-        }
-    }
-}
-
-impl From<&Lamp> for LampParams {
-    fn from(lamp: &Lamp) -> Self {
-        Self {
-            place: lamp.position_m.extend(lamp.radius_m).to_array(),
-            intensity: lamp.intensity.extend(lamp.cos_inner).to_array(),
-            direction: lamp.direction.extend(lamp.cos_outer).to_array(),
         }
     }
 }

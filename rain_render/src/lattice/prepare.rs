@@ -60,14 +60,9 @@ impl LatticeGpu {
         samples: u32,
         coverage: bool,
     ) {
-        for soft in [false, true] {
-            // Half of a cell may lie before a wall that its middle is behind.
-            let colour = OverlayKey::colour(format, samples).reading_depth(soft);
-            self.draw.prepare(device, colour);
-            if coverage {
-                self.draw
-                    .prepare(device, OverlayKey::coverage(samples).reading_depth(soft));
-            }
+        self.draw.prepare(device, OverlayKey::colour(format, samples));
+        if coverage {
+            self.draw.prepare(device, OverlayKey::coverage(samples));
         }
     }
 }
@@ -82,7 +77,6 @@ pub struct LatticeViewGpu {
     units_of: Option<u64>,
     capacity: usize,
     pub(super) count: u32,
-    pub(super) soft: bool,
     pub(super) group: Option<wgpu::BindGroup>,
 }
 
@@ -114,7 +108,6 @@ impl LatticeViewGpu {
             units_of: None,
             capacity: CAPACITY,
             count: 0,
-            soft: false,
             group: None,
         }
     }
@@ -130,7 +123,6 @@ impl LatticeViewGpu {
         textures: RainfallTextures,
     ) {
         self.count = input.cards.len() as u32;
-        self.soft = textures.scene_depth.is_some();
         if input.cards.len() > self.capacity {
             self.capacity = input.cards.len().next_power_of_two();
             self.cards = device.create_buffer(&wgpu::BufferDescriptor {
@@ -140,7 +132,11 @@ impl LatticeViewGpu {
                 mapped_at_creation: false,
             });
         }
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform(self.soft)));
+        queue.write_buffer(
+            &self.uniform,
+            0,
+            bytemuck::bytes_of(&input.uniform(textures.scene_depth.is_some())),
+        );
         if !input.cards.is_empty() {
             queue.write_buffer(&self.cards, 0, bytemuck::cast_slice(input.cards));
         }

@@ -2,9 +2,10 @@
 
 use glam::{Mat4, Vec2, Vec3};
 use rain_core::hash::pcg3d;
-use rain_core::rainfall::{CLASS_COUNT, Container, LEAD_CAP_M, LEAD_TIME_S, SizeClass};
+use rain_core::rainfall::{CLASS_COUNT, Container, DetailLaw, LEAD_CAP_M, LEAD_TIME_S, Lamp, RANGE_CAP_M, SizeClass};
 
 use crate::gpu_types::{CoverParams, RainfallClass, RainfallView};
+use crate::lamps;
 
 /// The light that drops show.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +33,8 @@ pub struct Shutter {
     pub kappa: f32,
     /// Fade against the scene over this distance, m; 0 = hard depth test.
     pub soft_m: f32,
+    /// The law that the container was thinned by; its drops are drawn larger by it.
+    pub detail: Option<DetailLaw>,
 }
 
 /// One view of the rain.
@@ -57,6 +60,8 @@ pub struct RainfallInput<'a> {
     pub shutter: Shutter,
     /// Surroundings.
     pub lighting: Lighting,
+    /// Lamps near the view; the first [`rain_core::rainfall::MAX_LAMPS`] count.
+    pub lamps: &'a [Lamp],
     /// Cover map relative to the eye.
     pub cover: CoverParams,
 }
@@ -79,6 +84,8 @@ impl RainfallInput<'_> {
             };
         }
         let lead = (self.eye_velocity_m_s * LEAD_TIME_S as f32).clamp_length_max(LEAD_CAP_M as f32);
+        let (lamp, lamps) = lamps::slots(self.lamps);
+        let size = self.shutter.detail.map(DetailLaw::size_terms);
         RainfallView {
             clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
             clip_from_eye_before: self.clip_from_eye_before.to_cols_array_2d(),
@@ -89,6 +96,9 @@ impl RainfallInput<'_> {
             sun_direction: self.lighting.sun_direction.extend(0.0).to_array(),
             sun: self.lighting.sun.extend(0.0).to_array(),
             lead: lead.extend(0.0).to_array(),
+            size: size.map_or([1.0, 0.0, 0.0, 0.0], |[even, linear, square]| {
+                [even, linear, square, 1.0 / RANGE_CAP_M as f32]
+            }),
             viewport: self.viewport_px.to_array(),
             focal: self.focal_px,
             near: self.near_m,
@@ -97,11 +107,12 @@ impl RainfallInput<'_> {
             kappa: self.shutter.kappa,
             soft: self.shutter.soft_m,
             drops: self.container.records.len() as u32,
-            pad_a: 0,
+            lamps,
             pad_b: 0,
             pad_c: 0,
             cover: self.cover,
             classes,
+            lamp,
         }
     }
 }

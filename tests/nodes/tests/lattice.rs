@@ -75,6 +75,7 @@ fn cards(textures: &StreakTextureSettings, intensity: f64) -> Vec<Card> {
         &LatticeView {
             volume: &volume,
             spectrum: &Spectrum::new(Distribution::MarshallPalmer, intensity).expect("a rate"),
+            local: None,
             motion: &FieldMotion::default().after(50.0),
             kappa: 1.0,
             lamps: &[],
@@ -588,7 +589,9 @@ fn lamps_and_slants_are_the_cpus() {
         "let at = input[i].place.xyz;
         output[i] = vec4<f32>(
             rain_lamp_radiance(input[i].lamp, at),
-            rain_card_slant(-normalize(at.xz), normalize(at)),
+            rain_card_slant(-normalize(at.xz), normalize(at)) + 16.0 * f32(
+                rain_lamp_bound(input[i].lamp, at + vec3<f32>(0.3, -0.2, 0.4), 0.6)
+                    < 0.9999 * rain_lamp_radiance(input[i].lamp, at).r),
         );",
     );
     let outputs: Vec<[f32; 4]> = gpu.compute(&source, &inputs, &[]);
@@ -603,6 +606,7 @@ fn lamps_and_slants_are_the_cpus() {
             );
         }
         lit += usize::from(expected.x > 0.0);
+        // 16 is added where a bound about a point 0.54 m away is broken.
         // A card that faces the eye straight: the line's level part is what it is met by.
         let level = f64::from(place.x.hypot(place.z) / place.length());
         let slant = pitch_weight(level) / level.max(0.05);

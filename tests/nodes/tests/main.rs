@@ -1,12 +1,14 @@
 //! The passes against their CPU twins, on a bare device.
 
 mod artist_look;
+mod beads;
 mod cover_parity;
 mod device;
 mod far;
 mod field_parity;
 mod film_waves;
 mod hash_parity;
+mod haze;
 mod lattice;
 mod lens;
 mod maps;

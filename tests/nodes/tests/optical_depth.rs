@@ -2,7 +2,8 @@
 //! quality.
 
 use glam::{DVec3, Vec2};
-use rain_core::rainfall::{CLASS_EDGES_MM, Distribution, DrawRange, Spectrum};
+use rain_core::haze::near_weight;
+use rain_core::rainfall::{CLASS_EDGES_MM, DetailLaw, Distribution, DrawRange, RANGE_CAP_M, Spectrum};
 use rain_render::gpu_types::Streak;
 use rain_render::rainfall::RainfallGpu;
 
@@ -116,4 +117,51 @@ fn optical_depth_does_not_change_with_the_shutter_or_the_speed_of_the_camera() {
     );
     // Other drops are another depth: the comparison can fail.
     assert!((other_quality / still - 1.0).abs() > 0.2, "{still}, {other_quality}");
+}
+
+#[test]
+fn a_law_of_detail_changes_the_optical_depth_by_its_error_and_the_default_does_not() {
+    let Some(gpu) = device() else { return };
+    let pipelines = RainfallGpu::new(&gpu.device);
+    let spectrum = Spectrum::new(Distribution::MarshallPalmer, 100.0).expect("a spectrum");
+    // Everything is drawn up to the cap: its distance is the law's.
+    let of = |detail: Option<DetailLaw>| {
+        mean_depth(&gpu, &pipelines, &spectrum, |seconds| FieldView {
+            seconds,
+            detail,
+            ..narrow()
+        })
+    };
+    // Drops lie evenly along a line of sight, each over a way of its range less the fades.
+    let view = narrow();
+    let range = DrawRange {
+        kappa: view.kappa,
+        focal_px: f64::from(view.focal_px()),
+        exposure_s: f64::from(view.exposure_s),
+    };
+    let predicted = |law: DetailLaw| {
+        let (mut with, mut without) = (0.0, 0.0);
+        for i in 0..200 {
+            let (low, high) = (CLASS_EDGES_MM[0], CLASS_EDGES_MM[12]);
+            let d = low + (high - low) * (f64::from(i) + 0.5) / 200.0;
+            let area = spectrum.concentration(d) * d * d;
+            for k in 0..400 {
+                let z = range.at(d) * 1.2 * (f64::from(k) + 0.5) / 400.0;
+                let weight = area * range.at(d) * near_weight(z, range.at(d));
+                with += weight * law.coverage(z / RANGE_CAP_M);
+                without += weight;
+            }
+        }
+        with / without
+    };
+    let plain = of(None);
+    for law in [DetailLaw::OpticalDepth, DetailLaw::QUADRATIC, DetailLaw::GAUSSIAN] {
+        let (found, expected) = (of(Some(law)) / plain, predicted(law));
+        // Both are means over the same moments; the 5 % of the undiminished drops' own test.
+        assert!(
+            (found / expected - 1.0).abs() < 0.05,
+            "{law:?}: {found}, its law {expected}"
+        );
+    }
+    assert!((predicted(DetailLaw::OpticalDepth) - 1.0).abs() < 1e-9 && predicted(DetailLaw::GAUSSIAN) < 0.93);
 }

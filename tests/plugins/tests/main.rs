@@ -3,11 +3,14 @@
 mod areas;
 mod auto_paint;
 mod bad_meshes;
+mod beads;
 mod by_hand;
+mod cards;
 mod device_loss;
 mod far_scene;
 mod film_flow;
 mod groups;
+mod haze;
 mod large_scene;
 mod lens;
 mod looks;

@@ -13,6 +13,8 @@ fn plan(intensity_mm_h: f64, seed: u64) -> Plan {
     let view = View::new([0.0, 30.0, 0.0], [0.0, 30.0, -10.0]).fov(10.0);
     let mut plan = Plan::new(steady(intensity_mm_h, [1.0, 0.0, 0.5]), 3.0, &[view]);
     plan.scenario.rain.streak_budget = 2_000_000;
+    // Single drops alone.
+    plan.scenario.rain.cards = false;
     plan.scenario.outputs.masks = vec![Mask::Rain];
     plan.scenario.warm_up_frames = 1;
     plan.scenario.seed = seed;

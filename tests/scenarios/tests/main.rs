@@ -6,6 +6,7 @@ mod determinism;
 mod examples;
 mod goldens;
 mod ground_masks;
+mod haze;
 mod intensity;
 mod moving;
 mod real_models;

@@ -1,12 +1,13 @@
 //! The cards of a view.
 
-use glam::{DVec3, IVec3, Vec3};
+use glam::{DVec2, DVec3, IVec3, Vec3};
 
 use super::card::Card;
 use super::lamp::{Lamp, MAX_LAMPS, luminance};
 use super::plan::{LatticePlan, Slice};
-use super::settings::MAX_CARD_SAMPLES;
+use super::rates::{ClassLadder, LatticeRates};
 use super::sharing::LatticeSharing;
+use crate::error::clamped;
 use crate::hash::{pcg3d, unit_f32};
 use crate::haze::{obscured, ramp_integral_m};
 use crate::rainfall::{DrawRange, FieldMotion, LatticeEye, RainViewVolume, Spectrum, fract};
@@ -22,8 +23,10 @@ const STRETCH: [f32; 2] = [0.25, 8.0];
 pub struct LatticeView<'a> {
     /// Eye, velocity, frustum, focal length, shutter.
     pub volume: &'a RainViewVolume,
-    /// The rain.
+    /// The rain; with `local`, the heaviest.
     pub spectrum: &'a Spectrum,
+    /// The rate from place to place, taken at the middle of each cell. `None`: that of `spectrum` everywhere.
+    pub local: Option<LatticeRates<'a>>,
     /// Where the classes of the drop field stand.
     pub motion: &'a FieldMotion,
     /// Quality κ with which single drops are drawn, none; 0 when they are not.
@@ -67,12 +70,15 @@ impl LatticePlan {
             exposure_s: view.volume.exposure_s,
         };
         let slices = self.slices(view.spectrum, &range);
-        for class in 0..self.textures().class_count() {
-            let own: Vec<&Slice> = slices.iter().filter(|slice| slice.class == Some(class)).collect();
-            let extinction: f64 = own.iter().map(|slice| slice.extinction_per_m).sum();
-            if extinction > 0.0 {
-                for level in 0..self.settings().levels.len() {
-                    self.fill_level(view, class, level, &own, extinction, cards, &mut counts);
+        let ladder = view.local.map(|_| ClassLadder::new(self, view.spectrum.intensity_mm_h));
+        for level in 0..self.settings().levels.len() {
+            for (shown, classes) in self.sharing_a_card(level) {
+                let own: Vec<&Slice> = slices
+                    .iter()
+                    .filter(|slice| slice.class.is_some_and(|class| classes.contains(&class)))
+                    .collect();
+                if own.iter().any(|slice| slice.extinction_per_m > 0.0) {
+                    self.fill_level(view, shown, level, &own, ladder.as_ref(), cards, &mut counts);
                 }
             }
         }
@@ -92,7 +98,7 @@ impl LatticePlan {
         class: usize,
         level: usize,
         slices: &[&Slice],
-        extinction: f64,
+        ladder: Option<&ClassLadder>,
         cards: &mut Vec<Card>,
         counts: &mut CardCounts,
     ) {
@@ -116,13 +122,16 @@ impl LatticePlan {
         let eye = LatticeEye::new(view.volume.eye_m, self.offset_m(class, view.motion), cell_m);
         let velocity = self.velocity_m_s(class, view.motion);
         let streaks = Streaks::new(self, view, class, velocity);
-        let (layers, heavier) = self.layers_at(class, extinction);
+        let extinction: f64 = slices
+            .iter()
+            .filter(|slice| slice.class == Some(class))
+            .map(|slice| slice.extinction_per_m)
+            .sum();
+        let everywhere = Pictures::new(self, class, extinction);
         let tile_m = self.textures().tile_m;
-        let samples = ((cell_m / tile_m).round() as u32).clamp(1, MAX_CARD_SAMPLES);
-        let picture = {
-            let [a, b] = layers.map(|layer| self.layers()[layer].mean_opacity());
-            a + (b - a) * heavier
-        };
+        let samples = ((cell_m / tile_m).round() as u32).clamp(1, settings.samples);
+        let metres = Metres::new(&ramps, half, inner, outer);
+        let origin = view.volume.eye_m;
         let stream = pcg3d([
             view.seed as u32,
             (view.seed >> 32) as u32 ^ 0x6c61_7474,
@@ -146,16 +155,15 @@ impl LatticePlan {
                         continue;
                     }
                     counts.cells += 1;
-                    // Metres of rain that the card stands for, times extinction: neighbours add up to the whole.
-                    let depth: f64 = ramps
-                        .iter()
-                        .map(|(sigma, begin, end)| {
-                            let metres = |[from, to]: [f64; 2]| {
-                                ramp_integral_m(distance + half, from, to) - ramp_integral_m(distance - half, from, to)
-                            };
-                            sigma * (metres(*begin) - metres(*end)).max(0.0)
-                        })
-                        .sum();
+                    let (share, pictures) = match (&view.local, ladder) {
+                        (Some(local), Some(ladder)) => {
+                            let place = DVec2::new(origin.x + f64::from(centre.x), origin.z + f64::from(centre.z));
+                            let share = ladder.share(class, local.at(place));
+                            (share, Pictures::new(self, class, extinction * share))
+                        }
+                        _ => (1.0, everywhere),
+                    };
+                    let depth = share * metres.depth(distance);
                     let opacity = obscured(depth / f64::from(samples));
                     let level_m = (centre.x * centre.x + centre.z * centre.z).sqrt();
                     // Cards end at a pitch of 60°, and the picture's corners are within the cell.
@@ -163,8 +171,14 @@ impl LatticePlan {
                     if opacity < MIN_OPACITY || steep || level_m < 1e-3 {
                         continue;
                     }
+                    let (heavier, picture) = pictures.of_column(unit_f32(column[2]));
                     let gain = (opacity / picture) as f32;
-                    if !self.is_lit(view, centre, radius, gain * self.layers()[layers[1]].unit as f32) {
+                    if !self.is_lit(
+                        view,
+                        centre,
+                        radius,
+                        gain * self.layers()[pictures.layers[1]].unit as f32,
+                    ) {
                         counts.unlit += 1;
                         continue;
                     }
@@ -185,7 +199,7 @@ impl LatticePlan {
                             heavier as f32,
                             through as f32,
                         ],
-                        layers: [layers[0] as u32, layers[1] as u32, samples, column[2]],
+                        layers: [pictures.layers[0] as u32, pictures.layers[1] as u32, samples, column[2]],
                     });
                 }
             }
@@ -205,6 +219,78 @@ impl LatticePlan {
             .map(|lamp| lamp.bound(centre, radius))
             .sum();
         (luminance(view.ambient) + lamps) * streak.min(1.0) >= min
+    }
+}
+
+/// The pictures of a class at a rain rate.
+#[derive(Clone, Copy)]
+struct Pictures {
+    layers: [usize; 2],
+    heavier: f64,
+    /// Mean opacity of each.
+    opacities: [f64; 2],
+}
+
+/// Columns of cells change from the lighter rain's picture to the heavier's one after the other, each over this share of
+/// the way: the others look up one picture, not two.
+const CROSS_FADE: f64 = 0.125;
+
+impl Pictures {
+    fn new(plan: &LatticePlan, class: usize, extinction: f64) -> Self {
+        let (layers, heavier) = plan.layers_at(class, extinction);
+        Self {
+            layers,
+            heavier,
+            opacities: layers.map(|layer| plan.layers()[layer].mean_opacity()),
+        }
+    }
+
+    /// Share of the heavier picture in a column whose turn comes at `turn`, in [0, 1], and the mean opacity of both.
+    fn of_column(&self, turn: f32) -> (f64, f64) {
+        let begin = f64::from(turn) * (1.0 - CROSS_FADE);
+        let heavier = clamped((self.heavier - begin) / CROSS_FADE, 0.0, 1.0);
+        let [a, b] = self.opacities;
+        (heavier, a + (b - a) * heavier)
+    }
+}
+
+/// Optical depth of a level's cells by their distance: metres of rain that a card stands for, times extinction. The
+/// ramps of neighbours add up to the whole.
+struct Metres {
+    from_m: f64,
+    per_m: f64,
+    depths: Vec<f64>,
+}
+
+/// Places of the table, a decimetre or two apart: ramps are smooth over metres.
+const PLACES: usize = 192;
+
+impl Metres {
+    fn new(ramps: &[(f64, [f64; 2], [f64; 2])], half: f64, inner: f64, outer: f64) -> Self {
+        let from_m = (inner - half).max(0.0);
+        let step = (outer + half - from_m) / (PLACES - 1) as f64;
+        let depth = |distance: f64| -> f64 {
+            let metres = |[from, to]: [f64; 2]| {
+                ramp_integral_m(distance + half, from, to) - ramp_integral_m(distance - half, from, to)
+            };
+            ramps
+                .iter()
+                .map(|(sigma, begin, end)| sigma * (metres(*begin) - metres(*end)).max(0.0))
+                .sum()
+        };
+        Self {
+            from_m,
+            per_m: 1.0 / step,
+            depths: (0..PLACES).map(|i| depth(from_m + i as f64 * step)).collect(),
+        }
+    }
+
+    /// Between the table's places, held at its ends. Units: none.
+    fn depth(&self, distance_m: f64) -> f64 {
+        let place = clamped((distance_m - self.from_m) * self.per_m, 0.0, (PLACES - 1) as f64);
+        let index = (place as usize).min(PLACES - 2);
+        let (a, b) = (self.depths[index], self.depths[index + 1]);
+        a + (b - a) * (place - index as f64)
     }
 }
 

@@ -1,11 +1,11 @@
-//! Lamps: what drops show of a point or spot light.
+//! Lamps: what drops, single or on cards, show of a point or spot light.
 
 use glam::Vec3;
 
 use crate::ops;
 use crate::rainfall::lamp_falloff_per_m2;
 
-/// Most lamps that a view's cards are lit by.
+/// Most lamps that a view's rain is lit by.
 pub const MAX_LAMPS: usize = 16;
 
 /// Shares of light that go straight through a sphere of water, and that it reflects outside.
@@ -29,6 +29,8 @@ pub struct Lamp {
     pub cos_outer: f32,
     /// Radius of the lamp, which keeps its light finite. Units: m.
     pub radius_m: f32,
+    /// Where its light has been made to end, by (1 − (d/range)⁴)² (Karis 2013). Units: m. Infinite: nowhere.
+    pub range_m: f32,
 }
 
 impl Lamp {
@@ -42,6 +44,7 @@ impl Lamp {
             cos_inner: -1.0,
             cos_outer: -2.0,
             radius_m,
+            range_m: f32::INFINITY,
         }
     }
 
@@ -52,9 +55,20 @@ impl Lamp {
         t * t
     }
 
+    fn falloff_per_m2(&self, distance_m: f32) -> f32 {
+        lamp_falloff_per_m2(f64::from(distance_m), f64::from(self.radius_m)) as f32 * self.window(distance_m)
+    }
+
+    /// Share of the light that is left of the inverse square at a distance. Units: none.
+    fn window(&self, distance_m: f32) -> f32 {
+        let square = (distance_m / self.range_m).powi(2);
+        let left = (1.0 - square * square).clamp(0.0, 1.0);
+        left * left
+    }
+
     /// Radiance that a drop at `place` (relative to the eye, m) sends to the eye. Units: exposed radiance.
     ///
-    /// Light falls with 1/(d² + r²), a spot's with the square of its share of the cone; the drop scatters it by its
+    /// Light falls with 1/(d² + r²) up to the lamp's range, a spot's with the square of its share of the cone; the drop scatters it by its
     /// refraction (fitted to the share of a disc that leaves within an angle) and reflects 0.066 of it evenly.
     ///
     /// Error: 8 % of the refracted share, the fit's; against its twin in WGSL 1e-3 relative.
@@ -67,13 +81,17 @@ impl Lamp {
         // A drop between the eye and the lamp refracts it straight on.
         let theta = ops::acosf((-towards.dot(from_eye)).clamp(-1.0, 1.0));
         let phase = ops::expf(0.745 - 3.44 * theta).min(MAX_PHASE);
-        let falloff = lamp_falloff_per_m2(f64::from(distance), f64::from(self.radius_m)) as f32;
+        let falloff = self.falloff_per_m2(distance);
         self.intensity
             * (falloff * self.cone(towards.dot(self.direction)) * (TRANSMITTED * phase + REFLECTED * 0.079_577_5))
     }
 
-    /// A bound on the luminance that any drop within `reach_m` of `place` sends to the eye. Units: exposed radiance.
-    pub(super) fn bound(&self, place: Vec3, reach_m: f32) -> f32 {
+    /// A bound on the luminance that any drop within `reach_m` of `place` (relative to the eye, m) sends to the eye.
+    /// Units: exposed radiance.
+    ///
+    /// Error: never below the luminance of [`Lamp::radiance`] there; 0 only where the lamp's cone or range ends.
+    #[must_use]
+    pub fn bound(&self, place: Vec3, reach_m: f32) -> f32 {
         let way = place - self.position_m;
         let distance = way.length();
         let nearest = (distance - reach_m).max(0.0);
@@ -86,7 +104,7 @@ impl Lamp {
                 return 0.0;
             }
         }
-        let falloff = lamp_falloff_per_m2(f64::from(nearest), f64::from(self.radius_m)) as f32;
+        let falloff = self.falloff_per_m2(nearest);
         luminance(self.intensity) * falloff * (TRANSMITTED * MAX_PHASE + REFLECTED * 0.079_577_5)
     }
 }

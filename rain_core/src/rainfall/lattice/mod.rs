@@ -21,6 +21,7 @@ mod card;
 mod fill;
 mod lamp;
 mod plan;
+mod rates;
 mod settings;
 mod sharing;
 
@@ -28,5 +29,6 @@ pub use card::{Card, CardHit, pitch_weight};
 pub use fill::{CardCounts, LatticeView};
 pub use lamp::{Lamp, MAX_LAMPS};
 pub use plan::LatticePlan;
+pub use rates::LatticeRates;
 pub use settings::{LatticeLevel, LatticeSettings, MAX_CARD_SAMPLES};
 pub use sharing::LatticeSharing;

@@ -121,6 +121,28 @@ impl LatticePlan {
         self.between(class, &motion.velocity_m_s)
     }
 
+    /// The cards of a level: the class that each shows, and the classes that it stands for.
+    pub(super) fn sharing_a_card(&self, level: usize) -> Vec<(usize, core::ops::Range<usize>)> {
+        let count = self.textures.class_count();
+        if level == 0 || !self.settings.pairs {
+            return (0..count).map(|class| (class, class..class + 1)).collect();
+        }
+        let middle = self.textures.intensities_mm_h.len() / 2 * count;
+        let sigma = |class: usize| self.layers[middle + class].extinction_per_m;
+        (0..count)
+            .step_by(2)
+            .map(|first| {
+                let pair = first..(first + 2).min(count);
+                let shown = if pair.len() == 2 && sigma(first + 1) > sigma(first) {
+                    first + 1
+                } else {
+                    first
+                };
+                (shown, pair)
+            })
+            .collect()
+    }
+
     fn between(&self, class: usize, of: &[DVec3; CLASS_COUNT]) -> DVec3 {
         let mix = self.mixes[class.min(self.mixes.len() - 1)];
         of[mix.lower] * (1.0 - mix.upper_share) + of[mix.lower + 1] * mix.upper_share

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{ConfigError, in_range};
 
-/// Most pictures that one card lays over each other: cells deeper than this many cubes show fewer, stronger streaks.
+/// Most pictures that one card may lay over each other.
 pub const MAX_CARD_SAMPLES: u32 = 4;
 
 /// Nearest start of cards. Units: cells of the first level. 3.2 m for 2 m, as [`crate::haze::mid_start_m`] has it.
@@ -32,6 +32,12 @@ pub struct LatticeSettings {
     /// Cards whose light can nowhere add more than this to the picture are left out. Units: exposed radiance, 1 = white.
     /// Domain: [0, 1]. Default: 0, none are: unlit rain still takes light from what is behind it.
     pub min_light: f64,
+    /// Most pictures that a card lays over each other, one for each cube of depth: cells deeper than this many show fewer,
+    /// stronger streaks. Domain: [1, 4]. Default: 1, since each is paid for in every pixel.
+    pub samples: u32,
+    /// Beyond the first level two neighbouring classes share a card, with the pictures and the speed of the one that takes
+    /// out more light at the middle rate. Default: true.
+    pub pairs: bool,
     /// No more cards than this; the farthest are left out. Domain: [0, 262 144]. Default: 16 384.
     pub max_cards: u32,
 }
@@ -43,6 +49,8 @@ impl Default for LatticeSettings {
             levels: vec![level(2.0, 12.0), level(4.0, 36.0)],
             far_m: 36.0,
             min_light: 0.0,
+            samples: 1,
+            pairs: true,
             max_cards: 16_384,
         }
     }
@@ -92,6 +100,13 @@ impl LatticeSettings {
         }
         in_range("far_m", self.far_m, 5.0, 100.0, "5 to 100 m")?;
         in_range("min_light", self.min_light, 0.0, 1.0, "0 to 1")?;
+        in_range(
+            "samples",
+            f64::from(self.samples),
+            1.0,
+            f64::from(MAX_CARD_SAMPLES),
+            "1 to 4",
+        )?;
         in_range("max_cards", f64::from(self.max_cards), 0.0, 262_144.0, "0 to 262144")?;
         Ok(self)
     }

@@ -4,7 +4,7 @@
     pbr_fragment::pbr_input_from_standard_material,
     pbr_functions::{alpha_discard, calculate_view},
     pbr_bindings::{depth_map_texture, depth_map_sampler},
-    mesh_functions::get_tag,
+    mesh_functions::{get_tag, get_world_from_local},
     mesh_view_bindings::view,
     view_transformations::{direction_view_to_world, frag_coord_to_ndc, position_ndc_to_view},
 }
@@ -15,6 +15,7 @@
     rain_painted_puddle_water, rain_crack_water, rain_puddle_noise, rain_noise_puddle, rain_normal_aslant, rain_udn,
     rain_film_texel, rain_memory_of, rain_memory_share, rain_puddle_rim, rain_water_map,
     rain_across_and_along, rain_rut_height, rain_film_wave_velocity, rain_film_wave_slope, rain_film_wavelets,
+    rain_beads,
     ArtistLook, rain_artist_surface, rain_lagarde_porosity, rain_fixed_state, RAIN_MASK_EXPOSURE, rain_mask_texel,
 }
 #ifdef PREPASS_PIPELINE
@@ -43,7 +44,7 @@ struct Wetting {
     // x: present, y: height map, z: width of the drenched ground, w: share of the noise.
     noise_flags: vec4<f32>,
     // x: look (0 physical, else a source's rules), y: fixed state (0 none, 1 dry .. 4 puddle), z: 1 for level faces
-    // alone, w unused.
+    // alone, w: share of drops that stand on it (below 0: from roughness).
     look: vec4<f32>,
     // Wheel ruts of noise puddles. x, y: cosine and sine of the lanes' direction, z: offset m, w: depth.
     ruts: vec4<f32>,
@@ -206,6 +207,37 @@ fn running_film(p: vec3<f32>, ddx: vec2<f32>, ddy: vec2<f32>, normal: vec3<f32>,
     return out;
 }
 
+// Drops that stand on a face: how the normal leans, the share of the pixel under drops, and under such as are too small
+// to be seen.
+struct Beaded {
+    lean: vec3<f32>,
+    cover: f32,
+    hidden: f32,
+}
+
+fn beaded(world: vec3<f32>, normal: vec3<f32>, instance: u32, wetness: f32) -> Beaded {
+    let frame = get_world_from_local(instance);
+    let x = normalize(frame[0].xyz);
+    let y = normalize(frame[1].xyz);
+    let z = normalize(frame[2].xyz);
+    // In the mesh's own frame, in metres: drops stay where they are on what moves.
+    let off = world - frame[3].xyz;
+    let n = abs(vec3<f32>(dot(normal, x), dot(normal, y), dot(normal, z)));
+    var across = x;
+    var down = z;
+    var steep = 0.0;
+    var seed = 11u;
+    if (n.y < max(n.x, n.z)) {
+        across = select(x, z, n.x > n.z);
+        down = -y;
+        steep = smoothstep(0.5, 0.9, y.y);
+        seed = select(23u, 37u, n.x > n.z);
+    }
+    let wide = max(length(dpdx(world)), length(dpdy(world)));
+    let found = rain_beads(vec2<f32>(dot(off, across), dot(off, down)), wide, rain_surface.eye.w, seed, wetness, steep);
+    return Beaded(across * found.x + down * found.y, found.z, found.w);
+}
+
 // Beyond this from the origin single precision has steps that show in waves, m.
 const FAR_M: f32 = 4096.0;
 
@@ -345,6 +377,18 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         pbr.material.perceptual_roughness = clamp(polished, WATER_ROUGHNESS, 1.0);
         pbr.material.reflectance = sqrt(by_rules.normal_reflectance / 0.16);
         pbr.N = normalize(mix(normalize(grain - tilt), surface, puddle));
+    }
+    // On what is smooth water stands in drops.
+    let by_roughness = 1.0 - smoothstep(0.3, 0.5, own.perceptual_roughness);
+    // A source's own rules and fixed states know none.
+    let guessed_drops = select(by_roughness, 0.0, wetting.look.x > 0.5 || is_fixed);
+    let drops = select(guessed_drops, wetting.look.w, wetting.look.w >= 0.0) * (1.0 - puddle);
+    let beads = beaded(in.world_position.xyz, face, in.instance_index, drops * max(wet.y, 0.8 * wet.x));
+    if (drops > 0.0) {
+        pbr.N = normalize(pbr.N - beads.lean);
+        let faint = rain_film_roughness(0.6, max(pbr.material.perceptual_roughness, WATER_ROUGHNESS), 1.0 - beads.hidden);
+        pbr.material.perceptual_roughness = mix(faint, WATER_ROUGHNESS, beads.cover);
+        pbr.material.reflectance = mix(pbr.material.reflectance, vec3<f32>(WATER_REFLECTANCE), beads.cover);
     }
     // Both ends of Fresnel's curve go with the square of this.
     let shine = mix(1.0, rain_surface.water.more_map.w, puddle);

@@ -38,12 +38,48 @@ fn a_spot_lights_its_cone_alone() {
         cos_inner: 0.95,
         cos_outer: 0.9,
         radius_m: 0.05,
+        range_m: f32::INFINITY,
     };
     let at = |x: f32| lamp.radiance(Vec3::new(x, 0.0, -10.0)).x;
     assert!(at(1.0) > 0.0 && at(3.5) > 0.0);
     // Between the angles (18.2° and 25.8°) it fades, beyond nothing is lit.
     assert!(at(1.0 + 10.0 * 0.41) > 0.0 && at(1.0 + 10.0 * 0.49) == 0.0);
     assert_eq!(lamp.radiance(Vec3::new(1.0, 0.0, 5.0)), Vec3::ZERO);
+}
+
+#[test]
+fn a_lamp_ends_at_its_range_and_its_bound_holds_everywhere() {
+    let drop = Vec3::new(0.0, 0.0, -10.0);
+    let at = |d: f32, range_m: f32| {
+        let lamp = Lamp {
+            range_m,
+            ..Lamp::point(drop + Vec3::X * d, Vec3::splat(50.0), 0.1)
+        };
+        lamp.radiance(drop).x
+    };
+    let share = |d: f32| at(d, 20.0) / at(d, f32::INFINITY);
+    // (1 − (d/r)⁴)² at half and at nine tenths of the range.
+    for (d, expected) in [(10.0_f32, 0.937_5_f32), (18.0, 0.343_9)] {
+        assert!((share(d) - expected * expected).abs() < 1e-4, "{d}: {}", share(d));
+    }
+    assert_eq!(at(20.0, 20.0), 0.0);
+    let lamp = Lamp {
+        direction: Vec3::NEG_Z,
+        cos_inner: 0.95,
+        cos_outer: 0.8,
+        range_m: 15.0,
+        ..Lamp::point(Vec3::new(0.5, -0.5, -2.0), Vec3::new(300.0, 200.0, 100.0), 0.1)
+    };
+    let mut dark = 0;
+    for i in 0..4000 {
+        let at = |k: u32, by: f32| by * (rain_core::hash::unit_f32(rain_core::hash::pcg3d([i, k, 5])[0]) - 0.5);
+        let middle = Vec3::new(at(0, 30.0), at(1, 10.0), at(2, 50.0));
+        let place = middle + Vec3::new(at(3, 1.0), at(4, 1.0), at(5, 1.0));
+        let bound = lamp.bound(middle, 0.9);
+        assert!(luminance(lamp.radiance(place)) <= bound * 1.000_1, "{place}");
+        dark += u32::from(bound == 0.0);
+    }
+    assert!((1000..4000).contains(&dark), "{dark}");
 }
 
 fn night() -> Case {
@@ -108,6 +144,7 @@ fn a_spot_leaves_out_what_its_cone_does_not_meet() {
         cos_inner: 0.98,
         cos_outer: 0.93,
         radius_m: 0.1,
+        range_m: f32::INFINITY,
     };
     let mut count = |direction: Vec3| {
         case.lamps = vec![spot(direction)];

@@ -72,6 +72,7 @@ impl Case {
             &LatticeView {
                 volume: &self.volume,
                 spectrum: &spectrum(self.intensity),
+                local: None,
                 motion: &self.motion,
                 kappa: self.kappa,
                 lamps: &self.lamps,

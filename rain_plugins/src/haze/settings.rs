@@ -1,0 +1,100 @@
+//! What users set.
+
+use bevy::prelude::*;
+use rain_core::error::{ConfigError, in_range};
+use rain_render::haze::MAX_HAZE_LAMPS;
+
+/// Longest accepted way through the rain. Units: m.
+pub const MAX_HAZE_LIMIT_M: f32 = 1e5;
+
+/// How a view shows the haze of rain. On a camera with [`crate::rainfall::RainView`]; each gets the defaults.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default)]
+pub struct HazeSettings {
+    /// Draws haze. Views whose `RainView` is off draw none in any case.
+    pub enabled: bool,
+    /// Extinction over cross-section Q. Units: none. Domain: [1, 4]. Default: 2, that of
+    /// [`RainQueries::visibility_m`](rain_ecs::prelude::RainQueries::visibility_m); a camera loses between 1 and 2.
+    pub efficiency: f32,
+    /// Height (world Y) that rain falls from; there is no haze above. Units: m. Domain: ±10⁵. Default: 1000.
+    pub cloud_base_m: f32,
+    /// Longest way through the rain; sky and what lies further away get the haze of this. Units: m. Domain: [10, 10⁵].
+    /// Default: 20 000.
+    pub limit_m: f32,
+    /// Lamps (point and spot lights) that glow, those with the most light at the eye first; 0: none. Domain: 0 to 16.
+    /// Default: 16.
+    pub lamps: u32,
+    /// Gain on the glow of lamps. Units: none. Domain: [0, 100]. Default: 1, physical: rain alone glows faintly, what one
+    /// remembers as a halo is mostly mist and the lens.
+    pub glow: f32,
+    /// Fog as an artist sets it, in place of the rain's. Default: none.
+    pub artist: Option<ArtistFog>,
+}
+
+/// Fog the artists' way (Lagarde 2013): denser in heavier rain, losing its colour as the rain sets in. Nothing physical.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default)]
+pub struct ArtistFog {
+    /// Density without rain. Units: 1/m. Domain: [0, 10]. Default: 0.001.
+    pub density_per_m: f32,
+    /// The density in the heaviest rain is 1 + gain times that. Units: none. Domain: [0, 1000]. Default: 4.
+    pub gain: f32,
+    /// Linear colour; its luminance is that of the view's surroundings times its own. Default: none, what surrounds the view.
+    pub colour: Option<LinearRgba>,
+    /// How much of its colour it loses in rain. Units: none. Domain: [0, 1]. Default: 0.8.
+    pub desaturation: f32,
+    /// How long it takes to lose it. Units: s. Domain: [0, 10⁶]. Default: 20.
+    pub transition_s: f32,
+}
+
+impl Default for ArtistFog {
+    fn default() -> Self {
+        Self {
+            density_per_m: 0.001,
+            gain: 4.0,
+            colour: None,
+            desaturation: 0.8,
+            transition_s: 20.0,
+        }
+    }
+}
+
+impl Default for HazeSettings {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            efficiency: 2.0,
+            cloud_base_m: 1000.0,
+            limit_m: 20_000.0,
+            lamps: MAX_HAZE_LAMPS as u32,
+            glow: 1.0,
+            artist: None,
+        }
+    }
+}
+
+impl HazeSettings {
+    /// These settings, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        in_range("efficiency", self.efficiency.into(), 1.0, 4.0, "1 to 4")?;
+        in_range("cloud_base_m", self.cloud_base_m.into(), -1e5, 1e5, "-1e5 to 1e5 m")?;
+        let furthest = f64::from(MAX_HAZE_LIMIT_M);
+        in_range("limit_m", self.limit_m.into(), 10.0, furthest, "10 to 1e5 m")?;
+        in_range("lamps", self.lamps.into(), 0.0, MAX_HAZE_LAMPS as f64, "0 to 16")?;
+        in_range("glow", self.glow.into(), 0.0, 100.0, "0 to 100")?;
+        if let Some(fog) = self.artist {
+            in_range("density_per_m", fog.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
+            in_range("gain", fog.gain.into(), 0.0, 1e3, "0 to 1000")?;
+            in_range("desaturation", fog.desaturation.into(), 0.0, 1.0, "0 to 1")?;
+            in_range("transition_s", fog.transition_s.into(), 0.0, 1e6, "0 to 1e6 s")?;
+            let colour = fog.colour.unwrap_or(LinearRgba::BLACK);
+            for value in [colour.red, colour.green, colour.blue] {
+                in_range("colour", value.into(), 0.0, 1e4, "0 to 1e4")?;
+            }
+        }
+        Ok(self)
+    }
+}

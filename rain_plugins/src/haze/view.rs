@@ -1,0 +1,267 @@
+//! What a marked camera shows of haze this frame.
+
+use std::sync::Arc;
+
+use bevy::math::DVec2;
+use bevy::prelude::*;
+use rain_core::haze::{
+    FOG_TABLE_KNOTS, FogFade, FogTable, RateExtinction, artist_fog_amount, extinction_per_m, fog_density,
+};
+use rain_core::rainfall::areas::{AreaField, AreaFieldF32};
+use rain_core::rainfall::{DrawRange, Spectrum};
+use rain_core::weather::relative_intensity;
+use rain_ecs::prelude::*;
+use rain_render::haze::{GlowingLamp, HazeFog};
+
+use super::lamps::{Lamps, strongest};
+use super::settings::HazeSettings;
+use crate::cover::AirAroundView;
+use crate::rainfall::{CardViewFrame, RainView, RainViewFrame, fill_cards, fill_containers};
+use crate::render_adapter::let_depth_be_read;
+use crate::report::{PassName, RainReport, SkipReason};
+use crate::schedule::RainViewSystems;
+
+/// Less optical depth than this on the longest way is not seen: a quarter of an 8-bit step.
+const NEGLIGIBLE_DEPTH: f64 = 1.0 / 1024.0;
+
+/// Tables of what is drawn are made anew when the extinction or the quality has changed by this share.
+const TABLE_STEP: f64 = 0.01;
+
+/// An image that receives how much of each pixel haze obscures (R16Float, made with
+/// [`mask_image`](crate::render_adapter::mask_image)). Put it on a camera with `RainView` and `Msaa::Off`.
+#[derive(Component, Clone, Debug)]
+pub struct HazeMask(pub Handle<Image>);
+
+/// A view's haze at a moment.
+#[derive(Clone, Debug)]
+pub(crate) struct HazeShot {
+    pub forward: Vec3,
+    pub extinction_per_m: f32,
+    pub efficiency: f32,
+    pub drawn_m: [f32; FOG_TABLE_KNOTS],
+    pub rates: Arc<RateExtinction>,
+    /// Areas packed about the eye, and the weather's rate.
+    pub areas: Option<(Arc<AreaFieldF32>, f32)>,
+    pub cloud_m: f32,
+    pub limit_m: f32,
+    pub fog: Option<HazeFog>,
+    pub lamps: Vec<GlowingLamp>,
+}
+
+/// What a table of drawn rain is made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Source {
+    spectrum: Spectrum,
+    efficiency: f32,
+    range: DrawRange,
+    cards: bool,
+}
+
+impl Source {
+    fn is_near(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64| a == b || (a / b - 1.0).abs() < TABLE_STEP;
+        near(self.spectrum.intensity_mm_h, other.spectrum.intensity_mm_h)
+            && near(self.spectrum.slope_per_mm, other.spectrum.slope_per_mm)
+            && near(self.range.kappa, other.range.kappa)
+            && near(self.range.focal_px, other.range.focal_px)
+            && near(self.range.exposure_s, other.range.exposure_s)
+            && self.efficiency == other.efficiency
+            && self.cards == other.cards
+    }
+}
+
+/// What a view shows of haze this frame; extracted to the render world.
+#[derive(Component, Clone, Debug, Default)]
+pub struct HazeViewFrame {
+    /// `None`: nothing.
+    pub(crate) shot: Option<HazeShot>,
+    /// Kept as long as they hold.
+    table: Option<(Source, [f32; FOG_TABLE_KNOTS])>,
+    rates: Option<(rain_core::rainfall::Distribution, f32, Arc<RateExtinction>)>,
+    settings: HazeSettings,
+    fade: FogFade,
+    before_s: f64,
+}
+
+impl HazeViewFrame {
+    /// Whether this frame draws haze.
+    #[must_use]
+    pub fn draws(&self) -> bool {
+        self.shot.is_some()
+    }
+
+    fn drawn_m(&mut self, source: Option<Source>) -> [f32; FOG_TABLE_KNOTS] {
+        let Some(source) = source else {
+            return [0.0; FOG_TABLE_KNOTS];
+        };
+        if let Some((known, metres)) = &self.table
+            && known.is_near(&source)
+        {
+            return *metres;
+        }
+        let table = FogTable::new(&source.spectrum, source.efficiency.into(), source.cards, |d| {
+            source.range.at(d)
+        });
+        let metres = table.map_or([0.0; FOG_TABLE_KNOTS], |table| table.drawn_m());
+        self.table = Some((source, metres));
+        metres
+    }
+
+    fn rates(&mut self, field: &RainfallField, efficiency: f32) -> Arc<RateExtinction> {
+        match &self.rates {
+            Some((distribution, q, rates)) if *distribution == field.distribution() && *q == efficiency => {
+                rates.clone()
+            }
+            _ => {
+                let rates = Arc::new(RateExtinction::new(field.distribution(), efficiency.into()));
+                self.rates = Some((field.distribution(), efficiency, rates.clone()));
+                rates
+            }
+        }
+    }
+}
+
+/// Haze of rain in all [`RainView`]s.
+pub struct HazePlugin;
+
+impl Plugin for HazePlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<HazeSettings>()
+            .init_resource::<AirAroundView>()
+            .add_systems(
+                PostUpdate,
+                aim_haze
+                    .in_set(RainViewSystems::Views)
+                    .after(fill_containers)
+                    .after(fill_cards),
+            );
+        app.register_required_components::<RainView, HazeSettings>();
+        app.register_required_components::<RainView, HazeViewFrame>();
+    }
+}
+
+fn aim_haze(
+    clock: Res<RainClock>,
+    field: Res<RainfallField>,
+    report: Res<RainReport>,
+    air: Res<AirAroundView>,
+    areas: Option<Res<RainAreas>>,
+    mut local: Local<AreaField>,
+    mut errors: MessageWriter<RainConfigError>,
+    lights: Lamps,
+    mut views: Query<(
+        (Entity, &RainView, Ref<HazeSettings>, Option<&CardViewFrame>),
+        &Camera,
+        &mut Camera3d,
+        &Projection,
+        &GlobalTransform,
+        &RainViewFrame,
+        &mut HazeViewFrame,
+    )>,
+) {
+    let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
+    let now = clock.now_s() + since_tick;
+    let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    if let Some(areas) = areas {
+        areas.field_after(since_tick, &mut local);
+    }
+    let mut any = false;
+    for ((entity, view, settings, cards), camera, mut camera_3d, projection, transform, rain, mut frame) in &mut views {
+        any = true;
+        let frame = &mut *frame;
+        frame.shot = None;
+        if settings.is_changed() {
+            match settings.validated() {
+                Ok(good) => frame.settings = good,
+                Err(error) => {
+                    errors.write(RainConfigError { entity, error });
+                }
+            }
+        }
+        let settings = frame.settings;
+        let eye = transform.translation();
+        let limit = f64::from(settings.limit_m);
+        let place = DVec2::new(eye.x.into(), eye.z.into());
+        // The heaviest rain on any way that counts, and that at the eye.
+        let (heaviest, here) = areas.map_or((*field.spectrum(), *field.spectrum()), |areas| {
+            let weather = areas.weather_mm_h();
+            (
+                field.spectrum_at(local.rates_within(place, limit, weather)[1]),
+                field.spectrum_at(local.rate_at(place, weather)),
+            )
+        });
+        let q = f64::from(settings.efficiency);
+        let size = camera.physical_viewport_size().unwrap_or_default();
+        let dt = now - std::mem::replace(&mut frame.before_s, now);
+        if let Some(fog) = settings.artist {
+            frame
+                .fade
+                .advance(here.intensity_mm_h > 0.0, dt, fog.transition_s.into());
+        }
+        let amount = artist_fog_amount(relative_intensity(here.intensity_mm_h));
+        let density = settings
+            .artist
+            .map(|fog| fog_density(fog.density_per_m.into(), fog.gain.into(), amount));
+        let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
+            Some(SkipReason::NoView)
+        } else if !view.enabled || !settings.enabled {
+            Some(SkipReason::Disabled)
+        } else if heaviest.intensity_mm_h <= 0.0 {
+            Some(SkipReason::NoRain)
+        } else if !matches!(projection, Projection::Perspective(_)) {
+            Some(SkipReason::Unsupported)
+        } else if air.closed_in == Some(entity) {
+            Some(SkipReason::Indoors)
+        } else if density.unwrap_or_else(|| extinction_per_m(&heaviest, q)) * limit < NEGLIGIBLE_DEPTH {
+            Some(SkipReason::Negligible)
+        } else {
+            None
+        };
+        if let Some(reason) = skip {
+            report.skipped(PassName::Haze, reason);
+            continue;
+        }
+        let_depth_be_read(&mut camera_3d);
+        // Shares of what is drawn are those of the heaviest rain that the drops may be in, as their quality is.
+        let source = rain.shutter.filter(|_| rain.draws()).map(|shutter| Source {
+            spectrum: areas.map_or(here, |areas| {
+                let reach = f64::from(rain_core::haze::FOG_TABLE_END_M as f32);
+                field.spectrum_at(local.rates_within(place, reach, areas.weather_mm_h())[1])
+            }),
+            efficiency: settings.efficiency,
+            range: DrawRange {
+                kappa: shutter.kappa.into(),
+                focal_px: rain.focal_px.into(),
+                exposure_s: shutter.exposure_s.into(),
+            },
+            cards: cards.is_some_and(|frame| frame.cards() > 0),
+        });
+        let packed = areas.map(|areas| {
+            let mut packed = AreaFieldF32::default();
+            if !local.pack(place, limit, &mut packed) {
+                warn_once!("more rain areas than the haze holds; the last are left out");
+            }
+            (Arc::new(packed), areas.weather_mm_h() as f32)
+        });
+        let (points, spots) = (&lights.0, &lights.1);
+        frame.shot = Some(HazeShot {
+            forward: transform.forward().into(),
+            extinction_per_m: extinction_per_m(&here, q) as f32,
+            efficiency: settings.efficiency,
+            drawn_m: frame.drawn_m(source),
+            rates: frame.rates(&field, settings.efficiency),
+            areas: packed,
+            cloud_m: settings.cloud_base_m - eye.y,
+            limit_m: settings.limit_m,
+            fog: settings.artist.zip(density).map(|(fog, density)| HazeFog {
+                density_per_m: density as f32,
+                colour: fog.colour.map(|c| Vec3::new(c.red, c.green, c.blue)),
+                desaturation: fog.desaturation * frame.fade.share() as f32,
+            }),
+            lamps: strongest(points, spots, eye, settings.lamps as usize, settings.glow),
+        });
+    }
+    if !any {
+        report.skipped(PassName::Haze, SkipReason::NoView);
+    }
+}

@@ -1,0 +1,218 @@
+// Haze over a finished scene: one triangle over the view, premultiplied.
+
+@group(0) @binding(0) var<uniform> view: HazeView;
+@group(0) @binding(1) var<storage, read> grid: array<f32>;
+@group(0) @binding(2) var scene_depth: texture_depth_2d;
+@group(0) @binding(3) var environment: texture_cube<f32>;
+@group(0) @binding(4) var environment_sampler: sampler;
+
+struct HazeVertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) ndc: vec2<f32>,
+    // How much of each lamp the eye sees.
+    @location(1) @interpolate(flat) seen_a: vec4<f32>,
+    @location(2) @interpolate(flat) seen_b: vec4<f32>,
+    @location(3) @interpolate(flat) seen_c: vec4<f32>,
+    @location(4) @interpolate(flat) seen_d: vec4<f32>,
+}
+
+// How far before a lamp its own housing may be, m.
+const HOUSING_M: f32 = 0.6;
+
+// Share of a lamp that the scene does not hide from the eye, by 16 pixels about it. Beyond the picture's border the border
+// answers; behind the eye nothing hides it.
+fn lamp_seen(index: u32) -> f32 {
+    if (index >= view.lamps) {
+        return 0.0;
+    }
+    let place = view.lamp[index].place;
+    let clip = view.clip_from_eye * vec4<f32>(place.xyz, 1.0);
+    let ahead = dot(place.xyz, view.forward.xyz);
+    if (ahead < 0.1) {
+        return 1.0;
+    }
+    let middle = (clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5) * view.viewport.zw;
+    let focal = 0.5 * view.viewport.w * length(vec3<f32>(
+        view.clip_from_eye[0].y, view.clip_from_eye[1].y, view.clip_from_eye[2].y));
+    let radius = max(2.0, focal * max(place.w, 0.15) / ahead);
+    var seen = 0.0;
+    for (var i = 0u; i < 16u; i += 1u) {
+        // Golden angle: evenly over the disc.
+        let turn = 2.3999632 * f32(i);
+        let off = radius * sqrt((f32(i) + 0.5) / 16.0) * vec2<f32>(cos(turn), sin(turn));
+        let pixel = clamp(middle + off, vec2<f32>(0.0), view.viewport.zw - 1.0) + view.viewport.xy;
+        let hidden = view.forward.w / max(textureLoad(scene_depth, vec2<i32>(pixel), 0), 1e-7) < ahead - HOUSING_M;
+        seen += select(1.0, 0.0, hidden) / 16.0;
+    }
+    return seen;
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) vertex_index: u32) -> HazeVertex {
+    var out: HazeVertex;
+    out.ndc = vec2<f32>(f32(vertex_index & 1u), f32(vertex_index >> 1u)) * 4.0 - 1.0;
+    out.position = vec4<f32>(out.ndc, 0.0, 1.0);
+    out.seen_a = vec4<f32>(lamp_seen(0u), lamp_seen(1u), lamp_seen(2u), lamp_seen(3u));
+    out.seen_b = vec4<f32>(lamp_seen(4u), lamp_seen(5u), lamp_seen(6u), lamp_seen(7u));
+    out.seen_c = vec4<f32>(lamp_seen(8u), lamp_seen(9u), lamp_seen(10u), lamp_seen(11u));
+    out.seen_d = vec4<f32>(lamp_seen(12u), lamp_seen(13u), lamp_seen(14u), lamp_seen(15u));
+    return out;
+}
+
+// Metres of rain that what is drawn stands for up to a distance.
+fn drawn_metres(way: f32) -> f32 {
+    let place = rain_drawn_place(way);
+    let index = min(u32(place), u32(RAIN_FOG_KNOTS) - 2u);
+    let last = RAIN_FOG_KNOTS - 1.0;
+    let low = f32(index) / last;
+    let high = f32(index + 1u) / last;
+    // Straight in the distance between two entries, as FogTable has it.
+    let t = clamp((way / RAIN_FOG_END_M - low * low) / (high * high - low * low), 0.0, 1.0);
+    return mix(view.drawn[index / 4u][index % 4u], view.drawn[(index + 1u) / 4u][(index + 1u) % 4u], t);
+}
+
+// A direction on the ground as a place among the grid's azimuths.
+fn azimuth_place(towards: vec3<f32>) -> f32 {
+    let turn = 6.2831853;
+    let angle = atan2(towards.z, towards.x) - view.grid.x;
+    let held = angle - turn * floor(angle / turn);
+    return clamp(held / view.grid.y, 0.0, f32(RAIN_HAZE_AZIMUTHS) - 1.001);
+}
+
+// Optical depth along the ground at an azimuth up to a distance. Error: 0.01 of it as a mean over pixels; for one 0.027
+// of the extinction times the distance to the last rain.
+fn ground_depth(azimuth: f32, distance: f32) -> f32 {
+    let knot = clamp(rain_haze_place(distance, view.grid.z), 0.0, f32(RAIN_HAZE_INTERVALS) - 0.001);
+    let i = u32(knot);
+    let low = rain_haze_knot(f32(i), view.grid.z);
+    let high = rain_haze_knot(f32(i) + 1.0, view.grid.z);
+    let t = clamp((distance - low) / (high - low), 0.0, 1.0);
+    let row = u32(azimuth) * (RAIN_HAZE_INTERVALS + 1u) + i;
+    let next = row + RAIN_HAZE_INTERVALS + 1u;
+    return mix(mix(grid[row], grid[row + 1u], t), mix(grid[next], grid[next + 1u], t), fract(azimuth));
+}
+
+// Intervals in which what is drawn is taken off the areas' rain.
+const DRAWN_INTERVALS: u32 = 6u;
+
+// Optical depth of the whole rain and of what is not drawn, along a line of sight from `ends.x` to `ends.y`. Error: 0.02 m
+// times the geometric extinction.
+fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
+    let way = ends.y - ends.x;
+    let flat = length(towards.xz);
+    if (view.uneven < 0.5 || flat < 1e-3) {
+        let drawn = drawn_metres(ends.y) - drawn_metres(ends.x);
+        return view.extinction * vec2<f32>(way, max(way - drawn, 0.0));
+    }
+    let azimuth = azimuth_place(towards);
+    let total = (ground_depth(azimuth, flat * ends.y) - ground_depth(azimuth, flat * ends.x)) / flat;
+    var drawn = 0.0;
+    var before = ends.x;
+    var before_depth = ground_depth(azimuth, flat * ends.x);
+    var before_drawn = drawn_metres(ends.x);
+    for (var i = 1u; i <= DRAWN_INTERVALS; i += 1u) {
+        let t = f32(i) / f32(DRAWN_INTERVALS);
+        let at = clamp(RAIN_FOG_END_M * t * t, ends.x, ends.y);
+        if (at - before > 1e-4) {
+            let depth = ground_depth(azimuth, flat * at);
+            let metres = drawn_metres(at);
+            drawn += (depth - before_depth) / (flat * (at - before)) * (metres - before_drawn);
+            before = at;
+            before_depth = depth;
+            before_drawn = metres;
+        }
+    }
+    return vec2<f32>(total, max(total - drawn, 0.0));
+}
+
+// Exposed radiance that nobody sees.
+const LEAST_GLOW: f32 = 1e-4;
+
+// Light of the lamps that all drops between `ends` send to the eye.
+fn glow(towards: vec3<f32>, ends: vec2<f32>, in: HazeVertex) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    var seen = array<vec4<f32>, 4>(in.seen_a, in.seen_b, in.seen_c, in.seen_d);
+    for (var i = 0u; i < view.lamps; i += 1u) {
+        let lamp = view.lamp[i];
+        let share = seen[i / 4u][i % 4u];
+        if (share <= 0.0) {
+            continue;
+        }
+        var extinction = view.extinction;
+        if (view.uneven > 0.5) {
+            // The rain between the eye and the lamp, or the scene before it.
+            let flat = max(length(lamp.place.xz), 0.5);
+            let azimuth = azimuth_place(lamp.place.xyz);
+            extinction = ground_depth(azimuth, flat) / flat;
+        }
+        // No line of sight gets more than half of I σ / h; less than a third of the darkest 8-bit step is left out.
+        let beside = max(length(cross(lamp.place.xyz, towards)), lamp.place.w);
+        let most = max(lamp.light.r, max(lamp.light.g, lamp.light.b));
+        if (0.5 * share * most * extinction < LEAST_GLOW * view.efficiency * beside) {
+            continue;
+        }
+        var light = 0.0;
+        if (lamp.light.w < -0.99) {
+            light = rain_lamp_glow(lamp.place.xyz, towards, ends.x, ends.y, lamp.place.w, extinction);
+        } else {
+            // A soft edge is the mean of cones between the inner and the outer one.
+            for (var k = 0u; k < 3u; k += 1u) {
+                let cosine = max(mix(lamp.light.w, lamp.axis.w, (f32(k) + 0.5) / 3.0), 0.01);
+                let cone = rain_cone_span(lamp.place.xyz, lamp.axis.xyz, cosine, towards);
+                let from_m = max(cone.x, ends.x);
+                let to_m = min(cone.y, ends.y);
+                light += rain_lamp_glow(lamp.place.xyz, towards, from_m, to_m, lamp.place.w, extinction) / 3.0;
+            }
+        }
+        sum += lamp.light.rgb * (share * light * extinction / view.efficiency);
+    }
+    return sum;
+}
+
+struct Haze {
+    light: vec3<f32>,
+    obscured: f32,
+}
+
+fn haze(in: HazeVertex, pixel: vec2<f32>, which: u32) -> Haze {
+    let ahead = view.eye_from_clip * vec4<f32>(in.ndc, 1.0, 1.0);
+    let towards = normalize(ahead.xyz / ahead.w);
+    let depth = textureLoad(scene_depth, vec2<i32>(pixel), i32(which));
+    // Infinite reverse-Z: distance = near / depth; where nothing is drawn it is 0.
+    let along = view.forward.w / max(depth, 1e-12);
+    let way = min(along / max(dot(towards, view.forward.xyz), 1e-3), view.limit);
+    let ends = rain_under_cloud(view.cloud, towards.y, way);
+    var out: Haze;
+    // What a drop keeps by inner reflections leaves it all the same: in even light haze shows that light.
+    out.light = rain_drop_shine(
+        environment,
+        environment_sampler,
+        view.environment,
+        view.ambient,
+        view.sun_direction.xyz,
+        view.sun.rgb,
+        towards,
+    ) / (RAIN_DROP_TRANSMITTED + RAIN_DROP_REFLECTED);
+    if (view.artist >= 0.0) {
+        out.obscured = rain_haze_share(view.artist * (ends.y - ends.x));
+        let luminance = dot(out.light, vec3<f32>(0.2126, 0.7152, 0.0722));
+        out.light = rain_desaturated(mix(out.light, luminance * view.fog.rgb, view.coloured), view.fog.w);
+    } else {
+        out.obscured = rain_haze_share(depths(towards, ends).y);
+    }
+    out.light = out.light * out.obscured + glow(towards, ends, in);
+    return out;
+}
+
+@fragment
+fn colour(in: HazeVertex) -> @location(0) vec4<f32> {
+    let which = 0u;
+    let found = haze(in, in.position.xy, which);
+    return vec4<f32>(found.light, found.obscured);
+}
+
+@fragment
+fn coverage(in: HazeVertex) -> @location(0) vec4<f32> {
+    let found = haze(in, in.position.xy, 0u);
+    return vec4<f32>(found.obscured, 0.0, 0.0, found.obscured);
+}

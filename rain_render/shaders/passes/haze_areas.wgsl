@@ -1,0 +1,92 @@
+// Extinction of the rain's areas along the ground, as a grid of azimuths and distances: its integral from the eye on.
+
+@group(0) @binding(0) var<uniform> view: HazeView;
+// A row of numbers (areas, share outside, the weather's rate), then the areas as rain_core packs them about the eye.
+@group(0) @binding(1) var<storage, read> areas: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read_write> grid: array<f32>;
+
+// Rate at a place (x, z), mm/h, and how far around it that does not change, m.
+fn rate_about(place: vec2<f32>) -> vec2<f32> {
+    let head = areas[0];
+    var found = vec2<f32>(head.y * head.z, 1.0);
+    var even = 1e30;
+    var row = 1u;
+    for (var i = 0u; i < u32(head.x); i += 1u) {
+        let at = areas[row];
+        let outline = areas[row + 1u];
+        let rain = areas[row + 2u];
+        let corners = u32(rain.w);
+        let p = place - at.xy;
+        var distance = -1e30;
+        if (outline.w > 1.5) {
+            var edges = vec2<f32>(1e30, 1.0);
+            let last = areas[row + 3u + (corners - 1u) / 2u];
+            var before = select(last.xy, last.zw, corners % 2u == 0u);
+            for (var c = 0u; c < corners; c += 1u) {
+                let two = areas[row + 3u + c / 2u];
+                let corner = select(two.xy, two.zw, c % 2u == 1u);
+                edges = rain_polygon_edge(edges, p, before, corner);
+                before = corner;
+            }
+            distance = edges.y * sqrt(edges.x);
+        } else if (outline.w > 0.5) {
+            let along = vec2<f32>(dot(at.zw, p), at.z * p.y - at.w * p.x);
+            distance = rain_ellipse_distance(along, outline.xy);
+        }
+        even = min(even, abs(distance) - 0.5 * outline.z);
+        found = rain_area_joined(found, rain.xyz, rain_area_weight(distance, outline.z), head.z);
+        row += 3u + (corners + 1u) / 2u;
+    }
+    return vec2<f32>(clamp(found.x * found.y, 0.0, 500.0), even);
+}
+
+fn extinction_of(rate: f32) -> f32 {
+    if (rate <= 0.0) {
+        return 0.0;
+    }
+    let place = max(log(rate / RAIN_FIRST_RATE_MM_H) * view.grid.w, 0.0);
+    let index = min(u32(place), RAIN_RATE_KNOTS - 2u);
+    let a = view.rates[index / 4u][index % 4u];
+    let b = view.rates[(index + 1u) / 4u][(index + 1u) % 4u];
+    return exp(mix(a, b, place - f32(index))) * min(rate / RAIN_FIRST_RATE_MM_H, 1.0);
+}
+
+const PIECES: u32 = 16u;
+
+// The integral over one interval of one azimuth: at once where the rain is even, else in 16 pieces.
+@compute @workgroup_size(64)
+fn spread(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x >= RAIN_HAZE_INTERVALS || id.y >= RAIN_HAZE_AZIMUTHS) {
+        return;
+    }
+    let azimuth = view.grid.x + f32(id.y) * view.grid.y;
+    let direction = vec2<f32>(cos(azimuth), sin(azimuth));
+    let low = rain_haze_knot(f32(id.x), view.grid.z);
+    let high = rain_haze_knot(f32(id.x) + 1.0, view.grid.z);
+    let length = high - low;
+    let middle = rate_about(direction * (0.5 * (low + high)));
+    var mean = extinction_of(middle.x);
+    if (middle.y < 0.5 * length) {
+        mean = 0.0;
+        for (var i = 0u; i < PIECES; i += 1u) {
+            let at = low + length * (f32(i) + 0.5) / f32(PIECES);
+            mean += extinction_of(rate_about(direction * at).x) / f32(PIECES);
+        }
+    }
+    grid[id.y * (RAIN_HAZE_INTERVALS + 1u) + id.x + 1u] = mean * length;
+}
+
+// Sums up along each azimuth.
+@compute @workgroup_size(64)
+fn add(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x >= RAIN_HAZE_AZIMUTHS) {
+        return;
+    }
+    let first = id.x * (RAIN_HAZE_INTERVALS + 1u);
+    var sum = 0.0;
+    grid[first] = 0.0;
+    for (var i = 1u; i <= RAIN_HAZE_INTERVALS; i += 1u) {
+        sum += grid[first + i];
+        grid[first + i] = sum;
+    }
+}

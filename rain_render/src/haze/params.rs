@@ -1,0 +1,209 @@
+//! Plain inputs of the pass and how they become the uniform.
+
+use glam::{Mat4, Vec3, Vec4};
+use rain_core::haze::{FOG_TABLE_KNOTS, LEAST_LAMP_M, RATE_KNOTS, RateExtinction};
+use rain_core::rainfall::areas::AreaFieldF32;
+
+use crate::compose::{HAZE_AZIMUTHS, HAZE_FIRST_M, HAZE_INTERVALS};
+use crate::gpu_types::{HazeLamp, HazeView};
+use crate::rainfall::Lighting;
+
+/// Most lamps that glow in a view.
+pub const MAX_HAZE_LAMPS: usize = 16;
+
+/// A lamp near the view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GlowingLamp {
+    /// From the eye. Units: m.
+    pub place_m: Vec3,
+    /// Units: m. At least 0.05.
+    pub radius_m: f32,
+    /// Luminous intensity by colour. Units: cd, times the exposure in [`HazeInput`].
+    pub intensity_cd: Vec3,
+    /// Where it shines, and the cosines of its outer and inner half angles; `None`: all around.
+    pub cone: Option<(Vec3, [f32; 2])>,
+}
+
+/// Areas that divide the rain.
+#[derive(Debug, Clone, Copy)]
+pub struct HazeAreas<'a> {
+    /// Packed about the eye.
+    pub packed: &'a AreaFieldF32,
+    /// The weather's rate. Units: mm/h.
+    pub weather_mm_h: f32,
+}
+
+/// Fog as an artist sets it, in place of the rain's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HazeFog {
+    /// Units: 1/m.
+    pub density_per_m: f32,
+    /// Times the luminance of what surrounds the view; `None`: that itself.
+    pub colour: Option<Vec3>,
+    /// How much of its colour it has lost. Domain: [0, 1].
+    pub desaturation: f32,
+}
+
+/// One view of haze.
+#[derive(Debug, Clone, Copy)]
+pub struct HazeInput<'a> {
+    /// Clip from eye-relative world (rotation and projection, no translation); infinite reverse-Z.
+    pub clip_from_eye: Mat4,
+    /// Where the view looks, unit.
+    pub forward: Vec3,
+    /// Near plane of the projection. Units: m.
+    pub near_m: f32,
+    /// Corner and size of the view in its target. Units: px.
+    pub viewport_px: Vec4,
+    /// Surroundings.
+    pub lighting: Lighting,
+    /// Extinction of the rain at the eye, that of all rain where there are no areas. Units: 1/m.
+    pub extinction_per_m: f32,
+    /// Extinction over cross-section Q. Domain: [1, 4].
+    pub efficiency: f32,
+    /// Metres of rain that what is drawn stands for: [`rain_core::haze::FogTable::drawn_m`].
+    pub drawn_m: [f32; FOG_TABLE_KNOTS],
+    /// Extinction by rate.
+    pub rates: &'a RateExtinction,
+    /// `None`: the rain is the same everywhere.
+    pub areas: Option<HazeAreas<'a>>,
+    /// Base of the cloud over the eye's height. Units: m.
+    pub cloud_m: f32,
+    /// Longest way through the rain. Units: m. Domain: [10, 1e6].
+    pub limit_m: f32,
+    /// `None`: the haze of the rain.
+    pub fog: Option<HazeFog>,
+    /// The first [`MAX_HAZE_LAMPS`] glow.
+    pub lamps: &'a [GlowingLamp],
+    /// Exposure of the lamps.
+    pub exposure: f32,
+}
+
+/// First azimuth and step of the grid so that it holds every direction in sight, from +X towards +Z. Units: rad.
+fn azimuths(eye_from_clip: Mat4, forward: Vec3) -> [f32; 2] {
+    let whole = [
+        -std::f32::consts::PI,
+        std::f32::consts::TAU / (HAZE_AZIMUTHS - 1) as f32,
+    ];
+    let towards = |x: f32, y: f32| {
+        let p = eye_from_clip * Vec4::new(x, y, 1.0, 1.0);
+        (p.truncate() / p.w).normalize_or_zero()
+    };
+    let clip_from_eye = eye_from_clip.inverse();
+    let sees = |direction: Vec3| {
+        let clip = clip_from_eye * direction.extend(0.0);
+        clip.w > 0.0 && clip.x.abs() <= 1.02 * clip.w && clip.y.abs() <= 1.02 * clip.w
+    };
+    let middle = forward.z.atan2(forward.x);
+    if sees(Vec3::Y) || sees(Vec3::NEG_Y) {
+        return whole;
+    }
+    let (mut low, mut high) = (0.0_f32, 0.0_f32);
+    for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+        let corner = towards(x, y);
+        let turn = std::f32::consts::TAU;
+        let off = corner.z.atan2(corner.x) - middle;
+        let off = off - turn * (off / turn).round();
+        (low, high) = (low.min(off), high.max(off));
+    }
+    // A margin for rounding, and for lamps at the border.
+    let margin = 0.02 * (high - low) + 1e-3;
+    if high - low > 3.0 {
+        return whole;
+    }
+    [
+        middle + low - margin,
+        (high - low + 2.0 * margin) / (HAZE_AZIMUTHS - 2) as f32,
+    ]
+}
+
+impl HazeInput<'_> {
+    /// Scale of the grid's knots.
+    fn scale(&self) -> f32 {
+        (self.limit_m / HAZE_FIRST_M as f32).ln_1p() / HAZE_INTERVALS as f32
+    }
+
+    /// The uniform of this view.
+    #[must_use]
+    pub fn uniform(&self) -> HazeView {
+        let eye_from_clip = self.clip_from_eye.inverse();
+        let [start, step] = azimuths(eye_from_clip, self.forward);
+        let mut lamp: [HazeLamp; MAX_HAZE_LAMPS] = bytemuck::Zeroable::zeroed();
+        for (slot, lamp) in lamp.iter_mut().zip(self.lamps) {
+            let (axis, [outer, inner]) = lamp.cone.unwrap_or((Vec3::NEG_Y, [-1.0; 2]));
+            *slot = HazeLamp {
+                place: lamp.place_m.extend(lamp.radius_m.max(LEAST_LAMP_M as f32)).to_array(),
+                light: (lamp.intensity_cd * self.exposure).extend(outer).to_array(),
+                axis: axis.extend(inner).to_array(),
+            };
+        }
+        let fours = |values: &[f32; 64]| core::array::from_fn(|i| core::array::from_fn(|k| values[4 * i + k]));
+        HazeView {
+            eye_from_clip: eye_from_clip.to_cols_array_2d(),
+            clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
+            environment: Vec3::splat(self.lighting.environment_scale)
+                .extend(self.lighting.environment_max_level)
+                .to_array(),
+            ambient: self.lighting.ambient.extend(0.0).to_array(),
+            sun_direction: self.lighting.sun_direction.extend(0.0).to_array(),
+            sun: self.lighting.sun.extend(0.0).to_array(),
+            forward: self.forward.extend(self.near_m).to_array(),
+            viewport: self.viewport_px.to_array(),
+            fog: self
+                .fog
+                .map_or(Vec4::ZERO, |fog| {
+                    fog.colour.unwrap_or_default().extend(fog.desaturation.clamp(0.0, 1.0))
+                })
+                .to_array(),
+            extinction: self.extinction_per_m,
+            efficiency: self.efficiency,
+            cloud: self.cloud_m,
+            limit: self.limit_m,
+            artist: self.fog.map_or(-1.0, |fog| fog.density_per_m.max(0.0)),
+            coloured: self.fog.and_then(|fog| fog.colour).map_or(0.0, |_| 1.0),
+            uneven: f32::from(u8::from(self.areas.is_some())),
+            lamps: self.lamps.len().min(MAX_HAZE_LAMPS) as u32,
+            grid: [start, step, self.scale(), RateExtinction::knots_per_ln() as f32],
+            drawn: fours(&self.drawn_m),
+            rates: fours(&self.rates.ln_per_m),
+            lamp,
+        }
+    }
+}
+
+const _: () = assert!(FOG_TABLE_KNOTS == 64 && RATE_KNOTS == 64);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_grid_holds_every_direction_in_sight() {
+        let f = 1.2;
+        let projection = Mat4::from_cols(
+            Vec4::new(f / 1.8, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, f, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, 0.0, -1.0),
+            Vec4::new(0.0, 0.0, 0.1, 0.0),
+        );
+        for yaw in 0..24 {
+            for pitch in -6..=6 {
+                let rotation =
+                    glam::Quat::from_rotation_y(yaw as f32 * 0.26) * glam::Quat::from_rotation_x(pitch as f32 * 0.25);
+                let clip_from_eye = projection * Mat4::from_quat(rotation.inverse());
+                let inverse = clip_from_eye.inverse();
+                let [start, step] = azimuths(inverse, rotation * Vec3::NEG_Z);
+                let span = step * (HAZE_AZIMUTHS - 1) as f32;
+                assert!(span > 0.0 && span < 6.29, "{span}");
+                for i in 0..=20 {
+                    for k in 0..=20 {
+                        let p = inverse * Vec4::new(i as f32 / 10.0 - 1.0, k as f32 / 10.0 - 1.0, 1.0, 1.0);
+                        let d = p.truncate() / p.w;
+                        let off = (d.z.atan2(d.x) - start).rem_euclid(std::f32::consts::TAU);
+                        assert!(off <= span + 1e-3, "{yaw} {pitch}: {off} of {span}");
+                    }
+                }
+            }
+        }
+    }
+}
