@@ -29,6 +29,7 @@ pub mod cover;
 pub mod error;
 pub mod hash;
 pub mod haze;
+pub mod lens;
 pub mod ops;
 pub mod optics;
 pub mod quadrature;

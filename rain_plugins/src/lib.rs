@@ -26,12 +26,14 @@
 //! | [`haze::HazePlugin`] | haze of rain, far showers, glow of lamps |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
+//! | [`lens::LensPlugin`] | drops on the glass of cameras that ask for it |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
 //! | [`render_adapter::RainRenderPlugin`] | the passes |
 
 pub mod cover;
 pub mod haze;
+pub mod lens;
 pub mod rainfall;
 pub mod render_adapter;
 pub mod report;
@@ -65,6 +67,7 @@ impl PluginGroup for RainPlugins {
             .add(splash::SplashPlugin)
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
+            .add(lens::LensPlugin)
     }
 }
 
@@ -96,6 +99,7 @@ impl Plugin for RainSchedulePlugin {
 pub mod prelude {
     pub use crate::cover::CoverSettings;
     pub use crate::haze::{ArtistFog, HazeMask, HazePlugin, HazeSettings};
+    pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
     pub use crate::rainfall::{CardSettings, RainView};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
@@ -107,9 +111,10 @@ pub mod prelude {
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
-        RainPlugins, cover::CoverPlugin, rainfall::RainfallPlugin, splash::SplashPlugin, surface::WetSurfacePlugin,
-        waves::WavesPlugin,
+        RainPlugins, cover::CoverPlugin, lens::LensPlugin, rainfall::RainfallPlugin, splash::SplashPlugin,
+        surface::WetSurfacePlugin, waves::WavesPlugin,
     };
+    pub use rain_core::lens::{WiperArm, WiperMode};
     pub use rain_core::surface::SurfaceState;
     pub use rain_ecs::prelude::*;
 }

@@ -30,6 +30,8 @@ pub enum PassName {
     Rainfall,
     /// Measurement masks (only when asked for).
     Masks,
+    /// Drops on the camera's glass.
+    Lens,
 }
 
 impl PassName {
@@ -48,6 +50,7 @@ impl PassName {
             Self::Lattice => "lattice",
             Self::Rainfall => "rainfall",
             Self::Masks => "masks",
+            Self::Lens => "lens",
         }
     }
 }

@@ -573,3 +573,47 @@ struct HazeView {
     rates: array<vec4<f32>, 16>,
     lamp: array<HazeLamp, 16>,
 }
+
+// A view through a glass in the rain. Places on the glass: m from where the view's axis meets it, x right, y up.
+struct LensView {
+    // Corner and size of the view in its target, px.
+    viewport: vec4<f32>,
+    // Arms: pivot (m), begin and end of the blade (m from it).
+    arms: array<vec4<f32>, 2>,
+    // Their angle at rest, at the far end and (w) now, rad; z: 1 where there is an arm.
+    turns: array<vec4<f32>, 2>,
+    // Wipers: period, moving part of it, time in it, time since they were started, s.
+    cycle: vec4<f32>,
+    // Size of the target, px.
+    size: vec2<f32>,
+    // Tangents of half the view's angles.
+    half_tan: vec2<f32>,
+    // From the eye to the glass, m.
+    distance: f32,
+    // Width of what sees through the glass, m.
+    aperture: f32,
+    // Share of glass that was not wiped that the mist covers.
+    mist: f32,
+    // How fast clear glass is covered, 1/s.
+    mist_per_s: f32,
+    // 1 while the wipers go.
+    wiping: f32,
+    pad_a: f32,
+    pad_b: f32,
+    pad_c: f32,
+}
+
+// A drop on the glass.
+struct LensDrop {
+    // m.
+    place: vec2<f32>,
+    // Unit vector of its longer axis.
+    along: vec2<f32>,
+    // Across, m.
+    radius: f32,
+    // Length over width.
+    stretch: f32,
+    // For its outline.
+    key: u32,
+    pad_a: u32,
+}

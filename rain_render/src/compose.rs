@@ -55,6 +55,7 @@ pub const LIBRARIES: &[Library] = library![
     "lattice",
     "landing",
     "splash",
+    "lens",
     "surface_mask"
 ];
 
@@ -88,7 +89,8 @@ pub const PASSES: &[Pass] = passes![
     "splash_make",
     "splash_draw",
     "haze_areas",
-    "haze"
+    "haze",
+    "lens"
 ];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:

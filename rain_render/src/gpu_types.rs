@@ -5,6 +5,7 @@
 #![allow(missing_docs, reason = "the members are documented once, in shaders/types.wgsl")]
 
 use bytemuck::{Pod, Zeroable};
+use rain_core::lens::MAX_WIPER_ARMS;
 use rain_core::rainfall::{CLASS_COUNT, MAX_LAMPS};
 use rain_core::splash::SPLASH_COUNTS;
 use rain_core::weather::SurfaceClass;
@@ -452,6 +453,38 @@ pub struct HazeView {
     pub lamp: [HazeLamp; 16],
 }
 
+/// A view through a glass in the rain.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct LensView {
+    pub viewport: [f32; 4],
+    pub arms: [[f32; 4]; MAX_WIPER_ARMS],
+    pub turns: [[f32; 4]; MAX_WIPER_ARMS],
+    pub cycle: [f32; 4],
+    pub size: [f32; 2],
+    pub half_tan: [f32; 2],
+    pub distance: f32,
+    pub aperture: f32,
+    pub mist: f32,
+    pub mist_per_s: f32,
+    pub wiping: f32,
+    pub pad_a: f32,
+    pub pad_b: f32,
+    pub pad_c: f32,
+}
+
+/// A drop on the glass.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LensDrop {
+    pub place: [f32; 2],
+    pub along: [f32; 2],
+    pub radius: f32,
+    pub stretch: f32,
+    pub key: u32,
+    pub pad_a: u32,
+}
+
 /// Name and byte offset of every member of a struct: what a layout test compares with WGSL.
 pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
 
@@ -500,6 +533,9 @@ pub fn layouts() -> Vec<Layout> {
             capacity, pad_a, pad_b, pad_c, cover, levels, counts, limits, classes),
         layout!(SplashPart: ends, shape, light, form),
         layout!(SplashFind: part, id, number, pad_a, pad_b),
+        layout!(LensView: viewport, arms, turns, cycle, size, half_tan, distance, aperture, mist, mist_per_s, wiping, pad_a,
+            pad_b, pad_c),
+        layout!(LensDrop: place, along, radius, stretch, key, pad_a),
         layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
         layout!(HazeLamp: place, light, axis),
         layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward, viewport, fog,

@@ -11,6 +11,7 @@ pub mod gpu_types;
 pub mod haze;
 mod lamps;
 pub mod lattice;
+pub mod lens;
 pub mod masks;
 mod overlay;
 pub mod rainfall;

@@ -14,6 +14,7 @@
 mod extract;
 mod haze;
 mod lattice;
+mod lens;
 mod prepare;
 mod record;
 mod splash;
@@ -326,6 +327,7 @@ impl Plugin for RainRenderPlugin {
             .init_gpu_resource::<haze::HazeViews>()
             .init_gpu_resource::<lattice::LatticeViews>()
             .init_resource::<lattice::ExtractedStreaks>()
+            .init_gpu_resource::<lens::LensViews>()
             .init_resource::<extract::ExtractedWaves>()
             .init_resource::<extract::ExtractedMap>()
             .add_systems(
@@ -337,6 +339,7 @@ impl Plugin for RainRenderPlugin {
                     splash::extract_splashes,
                     haze::extract_haze,
                     lattice::extract_cards,
+                    lens::extract_lenses,
                 ),
             )
             .add_systems(
@@ -346,6 +349,7 @@ impl Plugin for RainRenderPlugin {
                         haze::prepare_haze,
                         splash::prepare_splashes,
                         lattice::prepare_cards,
+                        lens::prepare_lenses,
                         prepare::prepare_rain,
                     )
                         .chain()
@@ -382,6 +386,9 @@ impl Plugin for RainRenderPlugin {
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),
+                    lens::lens
+                        .after(Core3dSystems::MainPass)
+                        .before(Core3dSystems::EarlyPostProcess),
                 ),
             );
     }

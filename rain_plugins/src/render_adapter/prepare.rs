@@ -27,6 +27,7 @@ use rain_render::waves::{WaveTileGpu, WavesGpu};
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
 use super::haze::HazeViews;
 use super::lattice::LatticeViews;
+use super::lens::LensViews;
 use super::splash::SplashViews;
 use crate::report::RainReport;
 use crate::surface::RainMaskView;
@@ -325,7 +326,7 @@ pub(super) fn prepare_rain(
     images: Res<RenderAssets<GpuImage>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
-    (splashes, hazes, cards): (Res<SplashViews>, Res<HazeViews>, Res<LatticeViews>),
+    (splashes, hazes, cards, lenses): (Res<SplashViews>, Res<HazeViews>, Res<LatticeViews>, Res<LensViews>),
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
@@ -465,6 +466,7 @@ pub(super) fn prepare_rain(
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
             + splashes.memory_bytes()
             + hazes.memory_bytes()
-            + cards.memory_bytes(),
+            + cards.memory_bytes()
+            + lenses.memory_bytes(),
     );
 }

@@ -21,6 +21,7 @@
 
 use std::path::PathBuf;
 
+use rain_core::lens::WiperMode;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
 use super::areas::RainAreas;
@@ -462,6 +463,20 @@ pub struct RainSettings {
     pub glow: f64,
     /// Whether rain beyond the single drops is drawn, as cards of many. Default: true.
     pub cards: bool,
+    /// Glass before the camera that the rain wets. Default: `Off`.
+    pub lens: Lens,
+}
+
+/// What glass a scenario's camera looks through.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Lens {
+    /// None that is wetted.
+    #[default]
+    Off,
+    /// The camera's own.
+    Camera,
+    /// A windscreen with wipers.
+    Windscreen(WiperMode),
 }
 
 /// Where rings on water come from.
@@ -489,6 +504,7 @@ impl Default for RainSettings {
             cloud_base_m: 1000.0,
             glow: 1.0,
             cards: true,
+            lens: Lens::Off,
             look: WetLook::Physical,
         }
     }

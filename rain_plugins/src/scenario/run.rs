@@ -391,6 +391,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
                 "lattice" => &["rain_lattice"],
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
                 "water_map" => &["rain_water_map"],
+                "lens" => &["rain_lens"],
                 "ripples" => &["rain_ripples"],
                 "waves" => &["rain_waves"],
                 _ => &[],

@@ -21,12 +21,13 @@ use rain_core::surface::basins::{Drain, Inlet};
 use rain_ecs::prelude::*;
 
 use super::error::ScenarioError;
-use super::file::{Scenario, Sky};
+use super::file::{Lens, Scenario, Sky};
 use super::path::{CameraPath, VehiclePath, wheel_angle_rad};
 use super::puddles::PartRoot;
 use super::run::RunError;
 use super::sky::{Cube, Handedness, SkyModel, generate};
 use crate::haze::HazeSettings;
+use crate::lens::{LensDrops, WindscreenWipers};
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
 use crate::surface::{KeepDry, MovesInRain, PlanarReflection, WaterLevels};
@@ -317,6 +318,15 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
         });
         if environment.reflection {
             camera.insert(PlanarReflection::default());
+        }
+        match scenario.rain.lens {
+            Lens::Off => {}
+            Lens::Camera => {
+                camera.insert(LensDrops::default());
+            }
+            Lens::Windscreen(mode) => {
+                camera.insert((LensDrops::windscreen(), WindscreenWipers { mode, ..default() }));
+            }
         }
         if let Some(masks) = &masks {
             camera.insert(masks.clone());

@@ -15,6 +15,7 @@ mod fall_speed;
 mod hash;
 mod height_field;
 mod lattice;
+mod lens;
 mod light;
 mod quadrature;
 mod spectrum;

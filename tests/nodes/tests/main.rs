@@ -10,6 +10,7 @@ mod film_waves;
 mod hash_parity;
 mod haze;
 mod lattice;
+mod lens;
 mod maps;
 mod optical_depth;
 mod rain_areas;

@@ -12,6 +12,7 @@ mod film_flow;
 mod groups;
 mod haze;
 mod large_scene;
+mod lens;
 mod looks;
 mod materials;
 mod mirrors;

@@ -17,6 +17,7 @@ pub mod fall_speed;
 pub mod field;
 pub mod hash;
 pub mod height_field;
+pub mod lens;
 pub mod light;
 pub mod numerics;
 pub mod spectrum;
