@@ -61,8 +61,8 @@ impl Lamp {
 
     /// Share of the light that is left of the inverse square at a distance. Units: none.
     fn window(&self, distance_m: f32) -> f32 {
-        let square = (distance_m / self.range_m).powi(2);
-        let left = (1.0 - square * square).clamp(0.0, 1.0);
+        let share = distance_m / self.range_m;
+        let left = (1.0 - share * share * share * share).clamp(0.0, 1.0);
         left * left
     }
 
