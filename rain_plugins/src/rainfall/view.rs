@@ -56,8 +56,9 @@ pub struct RainView {
     /// 30 % less light, [`DetailLaw::GAUSSIAN`] 48 % less.
     #[reflect(ignore)]
     pub detail: Option<DetailLaw>,
-    /// Draws the rain beyond the single drops as cards of many drops each; see [`super::CardSettings`]. Default: true.
-    pub cards: bool,
+    /// Draws the rain beyond the single drops as cards of many drops each; see [`super::CardSettings`]. `None`: on a GPU,
+    /// not on a software adapter, where they cost several times as much as the single drops.
+    pub cards: Option<bool>,
 }
 
 impl Default for RainView {
@@ -70,7 +71,7 @@ impl Default for RainView {
             soft_m: 0.15,
             container: None,
             detail: None,
-            cards: true,
+            cards: None,
         }
     }
 }
@@ -118,6 +119,11 @@ impl RainView {
     /// The number of streaks in force.
     pub(super) fn budget(&self, software: SoftwareAdapter) -> u32 {
         self.streak_budget.unwrap_or(if software.0 { 30_000 } else { 100_000 })
+    }
+
+    /// Whether cards are drawn.
+    pub(super) fn draws_cards(&self, software: SoftwareAdapter) -> bool {
+        self.cards.unwrap_or(!software.0)
     }
 }
 

@@ -461,8 +461,8 @@ pub struct RainSettings {
     pub cloud_base_m: f64,
     /// Gain on the glow of lamps in the haze. Units: none. Domain: [0, 100]; 1 is physical. Default: 1.
     pub glow: f64,
-    /// Whether rain beyond the single drops is drawn, as cards of many. Default: true.
-    pub cards: bool,
+    /// Whether rain beyond the single drops is drawn, as cards of many. Default: on a GPU, not on a software adapter.
+    pub cards: Option<bool>,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -503,7 +503,7 @@ impl Default for RainSettings {
             haze: true,
             cloud_base_m: 1000.0,
             glow: 1.0,
-            cards: true,
+            cards: None,
             lens: Lens::Off,
             look: WetLook::Physical,
         }

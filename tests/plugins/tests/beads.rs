@@ -58,18 +58,27 @@ fn drops_stand_on_paint_and_not_on_stone_and_follow_what_moves() {
     let plain = SurfaceWetting::default();
     let paint = top(0.2, 1.0, plain, Vec3::ZERO);
     let [dry, stone] = [top(0.2, 0.0, plain, Vec3::ZERO), top(0.9, 1.0, plain, Vec3::ZERO)];
-    assert!(unevenness(&dry) < 0.5, "dry paint is even: {}", unevenness(&dry));
-    assert!(unevenness(&stone) < 0.5, "so is stone: {}", unevenness(&stone));
-    assert!(unevenness(&paint) > 20.0, "drops on paint show: {}", unevenness(&paint));
+    // What a lamp's highlight and eight bits make of an even surface.
+    let even = unevenness(&dry).max(0.1);
+    assert!(unevenness(&stone) < 4.0 * even, "stone is even: {}", unevenness(&stone));
+    assert!(
+        unevenness(&paint) > 20.0 * even,
+        "drops on paint show: {}",
+        unevenness(&paint)
+    );
     let beads = |share| SurfaceWetting {
         beads: Some(share),
         ..default()
     };
     let film = top(0.2, 1.0, beads(0.0), Vec3::ZERO);
-    assert!(unevenness(&film) < 0.5, "none are asked for: {}", unevenness(&film));
+    assert!(
+        unevenness(&film) < 4.0 * even,
+        "none are asked for: {}",
+        unevenness(&film)
+    );
     let asked = top(0.9, 1.0, beads(1.0), Vec3::ZERO);
     assert!(
-        unevenness(&asked) > 20.0,
+        unevenness(&asked) > 20.0 * even,
         "drops on stone, asked for: {}",
         unevenness(&asked)
     );

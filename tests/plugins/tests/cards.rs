@@ -36,6 +36,7 @@ fn aloft(intensity_mm_h: f64, radiance: f32) -> TestApp {
         RainView {
             streak_budget: Some(20_000),
             contrast: 1.0,
+            cards: Some(true),
             ..default()
         },
     ));
@@ -73,6 +74,7 @@ fn cards_are_drawn_while_it_rains_and_their_pictures_are_made_once() {
         return;
     }
     let mut test = TestApp::new([96, 54], true);
+    set(&mut test, |view| view.cards = Some(true));
     world::ground(test.world());
     world::roof(test.world());
     let weather = test.world().spawn(Weather::rain(0.0)).id();
@@ -107,13 +109,13 @@ fn cards_are_drawn_while_it_rains_and_their_pictures_are_made_once() {
     test.frames(3, FRAME);
     assert_eq!(test.recorded(PassName::StreakTextures), 1);
 
-    set(&mut test, |view| view.cards = false);
+    set(&mut test, |view| view.cards = Some(false));
     test.reset();
     test.frames(4, FRAME);
     assert_eq!(test.recorded(PassName::Lattice), 0);
     assert_eq!(test.skipped(PassName::Lattice, SkipReason::Disabled), 4);
     assert_eq!(test.recorded(PassName::Rainfall), 4);
-    set(&mut test, |view| view.cards = true);
+    set(&mut test, |view| view.cards = Some(true));
 
     // Settings that no lattice can be made of draw none.
     let good = CardSettings::default();
@@ -158,9 +160,9 @@ fn pictures_come_from_a_folder_without_a_pass() {
         assert_eq!(test.recorded(PassName::StreakTextures), 0);
         let files = std::fs::read_dir(&folder).expect("the folder").count();
         assert_eq!(files, 1, "stored once, then read");
-        set(&mut test, |view| view.cards = true);
+        set(&mut test, |view| view.cards = Some(true));
         let with = light(&mut test);
-        set(&mut test, |view| view.cards = false);
+        set(&mut test, |view| view.cards = Some(false));
         assert!(with > light(&mut test), "they show");
     }
     std::fs::remove_dir_all(&folder).expect("the folder goes");
@@ -186,10 +188,10 @@ fn streaks_and_cards_take_out_the_light_that_the_account_gives_them() {
             let angle = shot as f32 * core::f32::consts::TAU / SHOTS as f32;
             let eye = Vec3::new(90.0 * shot as f32, 80.0, 0.0);
             test.look(eye, eye + Vec3::new(10.0 * angle.sin(), 1.0, -10.0 * angle.cos()));
-            set(&mut test, |view| view.cards = true);
+            set(&mut test, |view| view.cards = Some(true));
             test.frames(2, FRAME);
             both += light(&mut test) / f64::from(SHOTS);
-            set(&mut test, |view| view.cards = false);
+            set(&mut test, |view| view.cards = Some(false));
             near += light(&mut test) / f64::from(SHOTS);
             kappa += test
                 .world()
@@ -274,10 +276,10 @@ fn a_headlight_lights_the_rain_in_its_cone() {
     let [left, right] = halves(&mut test);
     assert!(right > 0.002 && right > 20.0 * left, "{left} {right}");
     // Cards too, beyond the single drops.
-    set(&mut test, |view| view.cards = false);
+    set(&mut test, |view| view.cards = Some(false));
     let [_, near] = halves(&mut test);
     assert!(near > 0.0 && near < 0.98 * right, "{near} of {right}");
-    set(&mut test, |view| view.cards = true);
+    set(&mut test, |view| view.cards = Some(true));
     // Turned off it is dark again.
     test.world().entity_mut(lamp).insert(Visibility::Hidden);
     test.frames(2, FRAME);

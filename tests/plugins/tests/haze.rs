@@ -16,8 +16,16 @@ use test_support::{gpu, world};
 /// Rows of a mask of half floats begin at multiples of 256 bytes: these have no gap.
 const SIZE: [u32; 2] = [128, 64];
 
-fn scene(intensity_mm_h: f64) -> TestApp {
+/// An app with haze in its view.
+fn hazy() -> TestApp {
     let mut test = TestApp::new(SIZE, true);
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(HazeSettings::default());
+    test
+}
+
+fn scene(intensity_mm_h: f64) -> TestApp {
+    let mut test = hazy();
     world::ground(test.world());
     test.world().spawn(Weather::rain(intensity_mm_h));
     test
@@ -189,7 +197,7 @@ fn a_far_shower_is_a_curtain_of_its_depth_and_nothing_beside_it() {
     if !gpu::available() {
         return;
     }
-    let mut test = TestApp::new(SIZE, true);
+    let mut test = hazy();
     test.world().spawn(Weather::rain(0.0));
     test.world().spawn(RainArea(AreaSettings {
         centre_m: bevy::math::DVec2::new(0.0, -3000.0),
@@ -306,7 +314,7 @@ fn a_lamp_has_a_halo_in_rain_that_fades_outwards_and_none_behind_a_wall() {
         return;
     }
     let picture = |rate: f64, wall: bool| {
-        let mut test = TestApp::new(SIZE, true);
+        let mut test = hazy();
         test.app.insert_resource(GlobalAmbientLight {
             brightness: 0.0,
             ..default()

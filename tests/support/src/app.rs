@@ -157,11 +157,17 @@ pub fn spawn_camera(app: &mut App, target: &Handle<Image>, rain: bool) -> Entity
         Transform::from_xyz(0.0, 1.7, 8.0),
     ));
     if rain {
-        camera.insert(RainView {
+        // Surfaces and streaks are measured in clear air; what looks at haze turns it on.
+        let clear = HazeSettings {
+            enabled: false,
+            ..default()
+        };
+        let view = RainView {
             streak_budget: Some(20_000),
             contrast: 16.0,
             ..default()
-        });
+        };
+        camera.insert((view, clear));
     }
     camera.id()
 }

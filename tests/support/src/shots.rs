@@ -82,6 +82,8 @@ impl Plan {
             weather,
             rain: RainSettings {
                 streak_budget: 20_000,
+                // Surfaces and streaks are measured in clear air.
+                haze: false,
                 ..RainSettings::default()
             },
             outputs: Outputs {
