@@ -206,7 +206,8 @@ impl Glass {
             // Of the largest share `single`.
             let share = 1.0 - single * (1.0 - f64::from(unit_f32(c)));
             let diameter = forcing.impacts.diameter_at(share).max(LEAST_DROP_MM);
-            let volume = core::f64::consts::PI / 6.0 * (diameter * 1e-3).powi(3);
+            let diameter_m = diameter * 1e-3;
+            let volume = core::f64::consts::PI / 6.0 * (diameter_m * diameter_m * diameter_m);
             let place = [
                 (2.0 * f64::from(unit_f32(a)) - 1.0) * half[0],
                 (2.0 * f64::from(unit_f32(b)) - 1.0) * half[1],

@@ -86,7 +86,7 @@ pub fn bead_at(place_m: [f64; 2], lattice: usize, seed: u32, wetness: f64) -> Be
         return Beads::default();
     }
     let row = turned[1].floor();
-    let shift = f64::from(unit_f32(pcg3d([row as i32 as u32, seed, 0x726F_77])[0]));
+    let shift = f64::from(unit_f32(pcg3d([row as i32 as u32, seed, 0x0072_6F77])[0]));
     let cells = [turned[0] + shift, turned[1]];
     let id = cells.map(f64::floor);
     let hash = pcg3d([id[0] as i32 as u32, id[1] as i32 as u32, seed]);

@@ -14,7 +14,7 @@ fn plan(intensity_mm_h: f64, seed: u64) -> Plan {
     let mut plan = Plan::new(steady(intensity_mm_h, [1.0, 0.0, 0.5]), 3.0, &[view]);
     plan.scenario.rain.streak_budget = 2_000_000;
     // Single drops alone.
-    plan.scenario.rain.cards = false;
+    plan.scenario.rain.cards = Some(false);
     plan.scenario.outputs.masks = vec![Mask::Rain];
     plan.scenario.warm_up_frames = 1;
     plan.scenario.seed = seed;
