@@ -215,7 +215,8 @@ struct Beaded {
     hidden: f32,
 }
 
-fn beaded(world: vec3<f32>, normal: vec3<f32>, instance: u32, wetness: f32) -> Beaded {
+// `wide`: width of the pixel on the face, m.
+fn beaded(world: vec3<f32>, wide: f32, normal: vec3<f32>, instance: u32, wetness: f32) -> Beaded {
     let frame = get_world_from_local(instance);
     let x = normalize(frame[0].xyz);
     let y = normalize(frame[1].xyz);
@@ -233,7 +234,6 @@ fn beaded(world: vec3<f32>, normal: vec3<f32>, instance: u32, wetness: f32) -> B
         steep = smoothstep(0.5, 0.9, y.y);
         seed = select(23u, 37u, n.x > n.z);
     }
-    let wide = max(length(dpdx(world)), length(dpdy(world)));
     let found = rain_beads(vec2<f32>(dot(off, across), dot(off, down)), wide, rain_surface.eye.w, seed, wetness, steep);
     return Beaded(across * found.x + down * found.y, found.z, found.w);
 }
@@ -383,8 +383,10 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     // A source's own rules and fixed states know none.
     let guessed_drops = select(by_roughness, 0.0, wetting.look.x > 0.5 || is_fixed);
     let drops = select(guessed_drops, wetting.look.w, wetting.look.w >= 0.0) * (1.0 - puddle);
-    let beads = beaded(in.world_position.xyz, face, in.instance_index, drops * max(wet.y, 0.8 * wet.x));
-    if (drops > 0.0) {
+    let wide = max(length(dpdx(in.world_position.xyz)), length(dpdy(in.world_position.xyz)));
+    let standing_drops = drops * max(wet.y, 0.8 * wet.x);
+    if (standing_drops > 0.0) {
+        let beads = beaded(in.world_position.xyz, wide, face, in.instance_index, standing_drops);
         pbr.N = normalize(pbr.N - beads.lean);
         let faint = rain_film_roughness(0.6, max(pbr.material.perceptual_roughness, WATER_ROUGHNESS), 1.0 - beads.hidden);
         pbr.material.perceptual_roughness = mix(faint, WATER_ROUGHNESS, beads.cover);
