@@ -93,6 +93,12 @@ pub const PASSES: &[Pass] = passes![
     "lens"
 ];
 
+/// Functions over a binding that some passes share, and those passes.
+const AREA_ROWS: (&str, &[&str]) = (
+    include_str!("../shaders/shared/area_rows.wgsl"),
+    &["water_map", "haze_areas"],
+);
+
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
 /// shelters, awnings and canopies of filling stations are lower. Units: m.
 pub const BUILDING_HEIGHT_M: f64 = 5.0;
@@ -165,6 +171,10 @@ pub fn module(pass: &str) -> String {
     for library in LIBRARIES {
         out.push_str(library.source);
     }
+    let (rows, readers) = AREA_ROWS;
+    if readers.contains(&pass.name) {
+        out.push_str(rows);
+    }
     out.push_str(pass.source);
     out
 }
@@ -177,6 +187,9 @@ pub(crate) fn shader(device: &wgpu::Device, pass: &str) -> wgpu::ShaderModule {
 }
 
 /// The module of the pass `haze` for a scene's depth with several samples: every sample is shaded.
+///
+/// # Panics
+/// When the pass no longer says what is replaced.
 #[must_use]
 pub fn haze_of_samples() -> String {
     let mut source = module("haze");
@@ -191,6 +204,7 @@ pub fn haze_of_samples() -> String {
         ),
         ("    let which = 0u;\n", ""),
     ] {
+        assert!(source.contains(single), "haze has `{single}`");
         source = source.replace(single, several);
     }
     source

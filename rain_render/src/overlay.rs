@@ -1,4 +1,4 @@
-//! What is drawn over a finished scene: the pipelines of streaks, cards and splashes for every kind of target.
+//! What is drawn over a finished scene: the pipelines of streaks, cards, splashes and haze for every kind of target.
 
 use std::collections::HashMap;
 
@@ -41,12 +41,34 @@ pub(crate) struct Overlay {
     pub layout: wgpu::BindGroupLayout,
     pipeline_layout: wgpu::PipelineLayout,
     shader: wgpu::ShaderModule,
+    /// Tested against the scene's depth, which is attached.
+    tested: bool,
     made: HashMap<OverlayKey, wgpu::RenderPipeline>,
 }
 
 impl Overlay {
-    /// Of the pass `pass`, with these bindings.
+    /// Of the pass `pass`, with these bindings, tested against the scene's depth.
     pub fn new(device: &wgpu::Device, label: &'static str, pass: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> Self {
+        Self::of(device, label, compose::shader(device, pass), entries, true)
+    }
+
+    /// Of a shader that reads the scene's depth itself, if at all; without a depth attachment.
+    pub fn untested(
+        device: &wgpu::Device,
+        label: &'static str,
+        shader: wgpu::ShaderModule,
+        entries: &[wgpu::BindGroupLayoutEntry],
+    ) -> Self {
+        Self::of(device, label, shader, entries, false)
+    }
+
+    fn of(
+        device: &wgpu::Device,
+        label: &'static str,
+        shader: wgpu::ShaderModule,
+        entries: &[wgpu::BindGroupLayoutEntry],
+        tested: bool,
+    ) -> Self {
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some(label),
             entries,
@@ -60,7 +82,8 @@ impl Overlay {
             label,
             layout,
             pipeline_layout,
-            shader: compose::shader(device, pass),
+            shader,
+            tested,
             made: HashMap::new(),
         }
     }
@@ -93,7 +116,7 @@ impl Overlay {
                 buffers: &[],
             },
             primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
+            depth_stencil: self.tested.then(|| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(false),
                 depth_compare: Some(wgpu::CompareFunction::GreaterEqual),

@@ -22,9 +22,6 @@ pub struct LevelKey {
 
 /// Levels over time, straight between keys, held before the first and after the last, or played again and again: the
 /// table of levels that Lagarde's demonstration animates (Lagarde 2013, E96).
-///
-/// # Errors
-/// [`LevelCurve::new`] names what it refuses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LevelCurve {

@@ -8,15 +8,15 @@ use rain_core::haze::{
     FOG_TABLE_KNOTS, FogFade, FogTable, RateExtinction, artist_fog_amount, extinction_per_m, fog_density,
 };
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32};
-use rain_core::rainfall::{DrawRange, Spectrum};
+use rain_core::rainfall::{DrawRange, Lamp, Spectrum};
 use rain_core::weather::relative_intensity;
 use rain_ecs::prelude::*;
-use rain_render::haze::{GlowingLamp, HazeFog};
+use rain_render::haze::HazeFog;
 
-use super::lamps::{Lamps, strongest};
+use super::lamps::glowing;
 use super::settings::HazeSettings;
 use crate::cover::AirAroundView;
-use crate::rainfall::{CardViewFrame, RainView, RainViewFrame, fill_cards, fill_containers};
+use crate::rainfall::{CardViewFrame, RainView, RainViewFrame, SceneLamps, fill_cards};
 use crate::render_adapter::let_depth_be_read;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -45,7 +45,7 @@ pub(crate) struct HazeShot {
     pub cloud_m: f32,
     pub limit_m: f32,
     pub fog: Option<HazeFog>,
-    pub lamps: Vec<GlowingLamp>,
+    pub lamps: Vec<Lamp>,
 }
 
 /// What a table of drawn rain is made from.
@@ -130,10 +130,8 @@ impl Plugin for HazePlugin {
             .init_resource::<AirAroundView>()
             .add_systems(
                 PostUpdate,
-                aim_haze
-                    .in_set(RainViewSystems::Views)
-                    .after(fill_containers)
-                    .after(fill_cards),
+                // After the containers, too: cards come after them.
+                aim_haze.in_set(RainViewSystems::Views).after(fill_cards),
             );
         app.register_required_components::<RainView, HazeSettings>();
         app.register_required_components::<RainView, HazeViewFrame>();
@@ -148,7 +146,7 @@ fn aim_haze(
     areas: Option<Res<RainAreas>>,
     mut local: Local<AreaField>,
     mut errors: MessageWriter<RainConfigError>,
-    lights: Lamps,
+    lights: SceneLamps,
     mut views: Query<(
         (Entity, &RainView, Ref<HazeSettings>, Option<&CardViewFrame>),
         &Camera,
@@ -243,7 +241,6 @@ fn aim_haze(
             }
             (Arc::new(packed), areas.weather_mm_h() as f32)
         });
-        let (points, spots) = (&lights.0, &lights.1);
         frame.shot = Some(HazeShot {
             forward: transform.forward().into(),
             extinction_per_m: extinction_per_m(&here, q) as f32,
@@ -258,7 +255,7 @@ fn aim_haze(
                 colour: fog.colour.map(|c| Vec3::new(c.red, c.green, c.blue)),
                 desaturation: fog.desaturation * frame.fade.share() as f32,
             }),
-            lamps: strongest(points, spots, eye, settings.lamps as usize, settings.glow),
+            lamps: glowing(&lights, eye, settings.lamps as usize, settings.glow),
         });
     }
     if !any {

@@ -7,6 +7,7 @@ use rain_core::lens::{Glass, GlassImpacts, Wipers};
 use rain_core::rainfall::Spectrum;
 use rain_render::gpu_types::LensDrop;
 
+use super::view::LensDrops;
 use crate::rainfall::ViewMotion;
 
 /// Longest a running drop is drawn, over its width.
@@ -25,6 +26,8 @@ pub(super) struct Source {
 #[derive(Component, Clone, Debug)]
 pub struct LensGlass {
     pub(super) glass: Glass,
+    /// The last settings that validated.
+    pub(super) settings: LensDrops,
     pub(super) motion: ViewMotion,
     /// The second up to which it has been followed.
     pub(super) now_s: f64,
@@ -38,6 +41,7 @@ impl Default for LensGlass {
     fn default() -> Self {
         Self {
             glass: Glass::new(0),
+            settings: LensDrops::default(),
             motion: ViewMotion::default(),
             now_s: 0.0,
             impacts: None,
@@ -58,6 +62,14 @@ impl LensGlass {
     #[must_use]
     pub fn draws(&self) -> bool {
         self.shot.is_some()
+    }
+
+    /// These settings, or the last ones that were valid.
+    pub(super) fn last_good(&mut self, drops: &LensDrops) -> LensDrops {
+        if let Ok(good) = drops.validated() {
+            self.settings = good;
+        }
+        self.settings
     }
 
     /// The drops `since_s` after the last tick.

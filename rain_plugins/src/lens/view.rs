@@ -157,10 +157,9 @@ fn wet_glass(
     mut views: Query<Glazed>,
 ) {
     for (entity, drops, wipers, projection, transform, mut glass) in &mut views {
-        // What does not validate has been named; the defaults stand in for it.
-        let drops = drops.validated().unwrap_or_default();
         let now = clock.now_s();
         let glass = &mut *glass;
+        let drops = glass.last_good(drops);
         if now < glass.now_s || !drops.enabled {
             glass.glass = Glass::new(seed.0 as u32 ^ (seed.0 >> 32) as u32);
         }
@@ -251,7 +250,7 @@ fn aim_lens(
                 errors.write(RainConfigError { entity, error });
             }
         }
-        let drops = drops.validated().unwrap_or_default();
+        let drops = glass.last_good(&drops);
         let (_, rotation, eye) = transform.to_scale_rotation_translation();
         glass.motion.observe(eye, rotation, time.delta_secs());
         let handed = glass.drops_after(since_tick);

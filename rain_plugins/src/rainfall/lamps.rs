@@ -12,7 +12,7 @@ use super::view::RainViewFrame;
 const AHEAD_M: f32 = 15.0;
 /// Its radius; it holds the eye. Units: m.
 const REACH_M: f32 = 18.0;
-/// A lamp fades in over this share of the contribution at which it is one of the [`MAX_LAMPS`].
+/// A lamp fades in over this share of the score at which it is one of those that count.
 const FADE: f32 = 0.25;
 /// Nothing is smaller: Bevy's lights have no radius by default, and their light is infinite. Units: m.
 const MIN_RADIUS_M: f32 = 0.02;
@@ -69,7 +69,58 @@ fn spot(light: &SpotLight, place: &GlobalTransform) -> Lamp {
     }
 }
 
-/// The strongest lamps on the rain ahead of an eye; those that only just count are dimmed, so that none appears at once.
+/// The point and spot lights of the scene.
+pub(crate) type SceneLamps<'w, 's> = (
+    Query<
+        'w,
+        's,
+        (
+            &'static PointLight,
+            &'static GlobalTransform,
+            &'static InheritedVisibility,
+        ),
+    >,
+    Query<
+        'w,
+        's,
+        (
+            &'static SpotLight,
+            &'static GlobalTransform,
+            &'static InheritedVisibility,
+        ),
+    >,
+);
+
+/// Those that shine: positions in the world (m), intensities in cd.
+pub(crate) fn shining(lamps: &SceneLamps) -> impl Iterator<Item = Lamp> {
+    let (points, spots) = lamps;
+    let points = points.iter().filter(|(_, _, seen)| seen.get());
+    let spots = spots.iter().filter(|(_, _, seen)| seen.get());
+    points
+        .map(|(light, place, _)| point(light, place))
+        .chain(spots.map(|(light, place, _)| spot(light, place)))
+}
+
+/// The `most` lamps of the highest score (above 0), the highest first; those that only just count are dimmed, so that none
+/// appears at once. `found` is left empty.
+pub(crate) fn keep_strongest(found: &mut Vec<(f32, Lamp)>, most: usize, out: &mut Vec<Lamp>) {
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let next = found.get(most).map_or(0.0, |(score, _)| *score);
+    out.clear();
+    out.extend(found.drain(..).take(most).map(|(score, lamp)| {
+        let weight = if next > 0.0 {
+            ((score / next - 1.0) / FADE).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        Lamp {
+            intensity: lamp.intensity * weight,
+            ..lamp
+        }
+    }));
+}
+
+/// The strongest lamps on the rain ahead of an eye.
 fn strongest(
     lamps: impl Iterator<Item = Lamp>,
     eye: Vec3,
@@ -88,51 +139,27 @@ fn strongest(
         let share = own.bound(ahead * AHEAD_M, REACH_M);
         (share > 0.0 && lamp.position_m.is_finite()).then_some((share, lamp))
     }));
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let next = found.get(MAX_LAMPS).map_or(0.0, |(share, _)| *share);
-    out.clear();
-    out.extend(found.iter().take(MAX_LAMPS).map(|(share, lamp)| {
-        let weight = if next > 0.0 {
-            ((share / next - 1.0) / FADE).clamp(0.0, 1.0)
-        } else {
-            1.0
-        };
-        Lamp {
-            intensity: lamp.intensity * weight,
-            ..*lamp
-        }
-    }));
+    keep_strongest(found, MAX_LAMPS, out);
 }
 
 pub(crate) fn choose_lamps(
-    points: Query<(&PointLight, &GlobalTransform, &InheritedVisibility)>,
-    spots: Query<(&SpotLight, &GlobalTransform, &InheritedVisibility)>,
+    lamps: SceneLamps,
     mut found: Local<Vec<(f32, Lamp)>>,
     mut views: Query<(&Camera, &GlobalTransform, &mut ViewLamps), With<RainViewFrame>>,
 ) {
-    for (camera, transform, mut lamps) in &mut views {
+    for (camera, transform, mut chosen) in &mut views {
         if !camera.is_active {
             continue;
         }
-        let shining = points
-            .iter()
-            .filter(|(_, _, seen)| seen.get())
-            .map(|(light, place, _)| point(light, place))
-            .chain(
-                spots
-                    .iter()
-                    .filter(|(_, _, seen)| seen.get())
-                    .map(|(light, place, _)| spot(light, place)),
-            );
-        let mut chosen = Arc::try_unwrap(std::mem::take(&mut lamps.0)).unwrap_or_default();
+        let mut out = Arc::try_unwrap(std::mem::take(&mut chosen.0)).unwrap_or_default();
         strongest(
-            shining,
+            shining(&lamps),
             transform.translation(),
             transform.forward().into(),
             &mut found,
-            &mut chosen,
+            &mut out,
         );
-        lamps.0 = Arc::new(chosen);
+        chosen.0 = Arc::new(out);
     }
 }
 

@@ -10,6 +10,7 @@ mod view;
 pub use cards::CardViewFrame;
 pub(crate) use cards::{CardShot, LatticeState, fill_cards};
 pub use lamps::ViewLamps;
+pub(crate) use lamps::{SceneLamps, keep_strongest, shining};
 pub(crate) use lead::leading_view;
 pub use motion::ViewMotion;
 pub use rain_core::rainfall::{

@@ -13,9 +13,9 @@ use bevy::render::renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
+use rain_core::rainfall::Lamp;
 use rain_render::haze::{
-    GlowingLamp, HazeAreas, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
-    encode_haze_coverage,
+    HazeAreas, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas, encode_haze_coverage,
 };
 
 use super::extract::{ExtractedRainScene, ExtractedRainView};
@@ -120,11 +120,15 @@ pub(super) fn prepare_haze(
         } else {
             shot.extinction_per_m
         };
-        let lamps: Vec<GlowingLamp> = shot
+        let exposed = |lamp: &Lamp| Lamp {
+            intensity: lamp.intensity * camera.exposure,
+            ..*lamp
+        };
+        let lamps: Vec<Lamp> = shot
             .lamps
             .iter()
-            .filter(|lamp| lamp.intensity_cd.max_element() * camera.exposure * extinction > LEAST_GLOW)
-            .copied()
+            .map(exposed)
+            .filter(|lamp| lamp.intensity.max_element() * extinction > LEAST_GLOW)
             .collect();
         let rotation = view.world_from_view.rotation();
         let input = HazeInput {
@@ -145,7 +149,6 @@ pub(super) fn prepare_haze(
             limit_m: shot.limit_m,
             fog: shot.fog,
             lamps: &lamps,
-            exposure: camera.exposure,
         };
         let textures = HazeTextures {
             scene_depth: depth.view(),

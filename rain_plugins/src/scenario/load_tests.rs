@@ -279,11 +279,16 @@ fn values_out_of_domain_name_the_field() {
         (
             "water_level: 0.125",
             "water_level: 2",
-            "weather.levels.keys.water_level",
+            "weather.levels.keys[1].water_level",
             "0 to 1",
         ),
         ("period_s: 20", "period_s: 7", "weather.levels.period_s", "not before"),
-        ("(time_s: 8, wetness", "(time_s: 0, wetness", "weather.levels", "rise"),
+        (
+            "(time_s: 8, wetness",
+            "(time_s: 0, wetness",
+            "weather.levels.keys[1].time_s",
+            "later than",
+        ),
         ("margin: 0.3", "margin: 0", "scene[0].puddles.margin", "0.0001 to 1"),
         ("relief: 0.02", "relief: 2", "scene[0].depth_map.relief", "0 to 1"),
         ("wave_slope: 0.0625", "wave_slope: 0.75", "water.wave_slope", "0 to 0.5"),

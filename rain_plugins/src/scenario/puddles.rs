@@ -4,6 +4,7 @@ use std::path::Path;
 
 use bevy::image::{CompressedImageFormats, ImageAddressMode, ImageSampler, ImageSamplerDescriptor, ImageType};
 use bevy::prelude::*;
+use rain_core::error::ConfigError;
 use serde::{Deserialize, Serialize};
 
 use super::file::Scenario;
@@ -92,27 +93,43 @@ fn relief() -> f64 {
     0.01
 }
 
+impl PaintedPuddles {
+    fn component(&self, source: PaintSource, height_map: bool) -> PuddlePaint {
+        PuddlePaint {
+            source,
+            fixed: self.fixed,
+            margin: self.margin as f32,
+            least_flood: self.least_flood as f32,
+            depth_m: self.depth_m as f32,
+            height_map,
+            ..default()
+        }
+    }
+}
+
+impl NoiseMap {
+    fn component(&self, height_map: bool) -> NoisePuddles {
+        NoisePuddles {
+            seed: self.seed,
+            size_m: self.size_m as f32,
+            noise: self.noise as f32,
+            stretch: self.stretch as f32,
+            ruts: self.ruts.then(WheelRuts::default),
+            height_map,
+            ..default()
+        }
+    }
+}
+
 impl Puddles {
-    /// Field, value and allowed range of the first thing wrong.
-    pub(super) fn check(&self) -> Result<(), (&'static str, String, &'static str)> {
-        let within = |field, value: f64, low: f64, high: f64, allowed| {
-            if (low..=high).contains(&value) {
-                Ok(())
-            } else {
-                Err((field, value.to_string(), allowed))
-            }
-        };
+    /// What the components say of these values.
+    ///
+    /// # Errors
+    /// Names the first field outside its domain.
+    pub(super) fn check(&self) -> Result<(), ConfigError> {
         match self {
-            Self::Painted(paint) => {
-                within("margin", paint.margin, 1e-4, 1.0, "0.0001 to 1")?;
-                within("least_flood", paint.least_flood, 0.0, 1.0, "0 to 1")?;
-                within("depth_m", paint.depth_m, 0.0, 1.0, "0 to 1 m")
-            }
-            Self::Noise(map) => {
-                within("size_m", map.size_m, 0.1, 1000.0, "0.1 to 1000 m")?;
-                within("noise", map.noise, 0.0, 1.0, "0 to 1")?;
-                within("stretch", map.stretch, 1.0, 100.0, "1 to 100")
-            }
+            Self::Painted(paint) => paint.component(PaintSource::default(), false).validated().map(|_| ()),
+            Self::Noise(map) => map.component(false).validated().map(|_| ()),
         }
     }
 }
@@ -158,26 +175,10 @@ pub(super) fn place(app: &mut App, scenario: &Scenario, folder: &Path) -> Result
             match &part.puddles {
                 Some(Puddles::Painted(paint)) if texture.is_some() || has_colors(world, entity) => {
                     let source = texture.clone().map_or(PaintSource::VertexColors, PaintSource::Texture);
-                    world.entity_mut(entity).insert(PuddlePaint {
-                        source,
-                        fixed: paint.fixed,
-                        margin: paint.margin as f32,
-                        least_flood: paint.least_flood as f32,
-                        depth_m: paint.depth_m as f32,
-                        height_map: holes,
-                        ..default()
-                    });
+                    world.entity_mut(entity).insert(paint.component(source, holes));
                 }
                 Some(Puddles::Noise(map)) => {
-                    world.entity_mut(entity).insert(NoisePuddles {
-                        seed: map.seed,
-                        size_m: map.size_m as f32,
-                        noise: map.noise as f32,
-                        stretch: map.stretch as f32,
-                        ruts: map.ruts.then(WheelRuts::default),
-                        height_map: holes,
-                        ..default()
-                    });
+                    world.entity_mut(entity).insert(map.component(holes));
                 }
                 Some(Puddles::Painted(_)) | None => {}
             }

@@ -3,11 +3,13 @@
 use std::collections::BTreeSet;
 
 use rain_core::error::ConfigError;
+use rain_ecs::prelude::LevelCurve;
 use thiserror::Error;
 
 use super::areas::MAX_AREAS;
 use super::expectation::{At, Check, Expectation, MaskCheck, Statistic};
 use super::file::{Camera, Captures, Environment, Mask, Scenario, Sky, Vehicle};
+use super::puddles::Puddles;
 use super::report::PASS_NAMES;
 use super::weather::MAX_KEYS;
 use crate::splash::MAX_SPLASH_BUDGET;
@@ -87,6 +89,21 @@ fn file_name(field: &str, name: &str) -> Checked {
     }
 }
 
+/// The field of `at` that does not validate, or `at` itself.
+fn config(at: &str, error: ConfigError) -> Checked {
+    match error {
+        ConfigError::OutOfRange { field, value, allowed } => problem(format!("{at}.{field}"), value, allowed),
+        ConfigError::NotIncreasing {
+            index, value, previous, ..
+        } => problem(
+            format!("{at}.keys[{index}].time_s"),
+            value,
+            format!("later than the one before it ({previous} s)"),
+        ),
+        ConfigError::Empty { field } => problem(format!("{at}.{field}"), "empty", "at least one"),
+    }
+}
+
 fn rising(field: &str, time: f64, before: Option<f64>) -> Checked {
     match before {
         Some(before) if time <= before => problem(field, time, format!("later than the one before it ({before} s)")),
@@ -114,10 +131,8 @@ impl Scenario {
             numbers(&format!("{at}.translation"), &part.translation, -WORLD_M, WORLD_M, "m")?;
             number(&format!("{at}.yaw_deg"), part.yaw_deg, -36_000.0, 36_000.0, "degrees")?;
             number(&format!("{at}.scale"), part.scale, 1e-4, 1e4, "")?;
-            if let Some(puddles) = &part.puddles {
-                puddles
-                    .check()
-                    .or_else(|(name, value, allowed)| problem(format!("{at}.puddles.{name}"), value, allowed))?;
+            if let Some(Err(error)) = part.puddles.as_ref().map(Puddles::check) {
+                return config(&format!("{at}.puddles"), error);
             }
             if let Some(map) = &part.depth_map {
                 number(&format!("{at}.depth_map.relief"), map.relief, 0.0, 1.0, "")?;
@@ -200,19 +215,13 @@ impl Scenario {
         if let Some(levels) = &weather.levels {
             count("weather.levels.keys", levels.keys.len(), MAX_KEYS, "keys")?;
         }
-        match weather.level_curve() {
-            Ok(_) => {}
-            Err(ConfigError::OutOfRange {
-                field: "period_s",
-                value,
-                allowed,
-            }) => {
-                return problem("weather.levels.period_s", value, allowed);
+        for (i, key) in weather.levels.iter().flat_map(|levels| &levels.keys).enumerate() {
+            if let Err(error) = LevelCurve::new(vec![key.core()], None) {
+                return config(&format!("weather.levels.keys[{i}]"), error);
             }
-            Err(ConfigError::OutOfRange { field, value, allowed }) => {
-                return problem(format!("weather.levels.keys.{field}"), value, allowed);
-            }
-            Err(other) => return problem("weather.levels", other, "keys whose times rise"),
+        }
+        if let Err(error) = weather.level_curve() {
+            return config("weather.levels", error);
         }
         for (i, key) in weather.keys.iter().enumerate() {
             key.check(i.checked_sub(1).map(|i| &weather.keys[i]), &weather.base)

@@ -140,6 +140,19 @@ impl WeatherKey {
     }
 }
 
+impl LevelsAt {
+    pub(super) fn core(&self) -> LevelKey {
+        LevelKey {
+            time_s: self.time_s,
+            levels: WaterByHand {
+                wetness: self.wetness,
+                water_level: self.water_level,
+                hole_level: self.hole_level,
+            },
+        }
+    }
+}
+
 impl Weather {
     /// The levels to play back.
     ///
@@ -147,15 +160,7 @@ impl Weather {
     /// What is wrong with them, which validation reports with the field.
     pub fn level_curve(&self) -> Result<Option<LevelCurve>, ConfigError> {
         let Some(levels) = &self.levels else { return Ok(None) };
-        let keys = levels.keys.iter().map(|key| LevelKey {
-            time_s: key.time_s,
-            levels: WaterByHand {
-                wetness: key.wetness,
-                water_level: key.water_level,
-                hole_level: key.hole_level,
-            },
-        });
-        LevelCurve::new(keys.collect(), levels.period_s).map(Some)
+        LevelCurve::new(levels.keys.iter().map(LevelsAt::core).collect(), levels.period_s).map(Some)
     }
 
     /// The weather as a timeline: keys filled, the preset taken, or the table read from `folder`.

@@ -172,7 +172,13 @@ impl PuddlePaint {
     /// # Errors
     /// Names the first field that is not finite or outside its domain.
     pub fn validated(&self) -> Result<&Self, ConfigError> {
-        in_range("margin", f64::from(self.margin), 1e-4, 1.0, "0.0001 to 1")?;
+        in_range(
+            "margin",
+            f64::from(self.margin),
+            f64::from(1e-4_f32),
+            1.0,
+            "0.0001 to 1",
+        )?;
         in_range("least_flood", f64::from(self.least_flood), 0.0, 1.0, "0 to 1")?;
         in_range("depth_m", f64::from(self.depth_m), 0.0, 1.0, "0 to 1 m")?;
         Ok(self)

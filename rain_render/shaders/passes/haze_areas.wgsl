@@ -12,30 +12,10 @@ fn rate_about(place: vec2<f32>) -> vec2<f32> {
     var even = 1e30;
     var row = 1u;
     for (var i = 0u; i < u32(head.x); i += 1u) {
-        let at = areas[row];
-        let outline = areas[row + 1u];
-        let rain = areas[row + 2u];
-        let corners = u32(rain.w);
-        let p = place - at.xy;
-        var distance = -1e30;
-        if (outline.w > 1.5) {
-            var edges = vec2<f32>(1e30, 1.0);
-            let last = areas[row + 3u + (corners - 1u) / 2u];
-            var before = select(last.xy, last.zw, corners % 2u == 0u);
-            for (var c = 0u; c < corners; c += 1u) {
-                let two = areas[row + 3u + c / 2u];
-                let corner = select(two.xy, two.zw, c % 2u == 1u);
-                edges = rain_polygon_edge(edges, p, before, corner);
-                before = corner;
-            }
-            distance = edges.y * sqrt(edges.x);
-        } else if (outline.w > 0.5) {
-            let along = vec2<f32>(dot(at.zw, p), at.z * p.y - at.w * p.x);
-            distance = rain_ellipse_distance(along, outline.xy);
-        }
-        even = min(even, abs(distance) - 0.5 * outline.z);
-        found = rain_area_joined(found, rain.xyz, rain_area_weight(distance, outline.z), head.z);
-        row += 3u + (corners + 1u) / 2u;
+        let area = packed_area(row, place);
+        even = min(even, abs(area.distance) - 0.5 * area.transition);
+        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition), head.z);
+        row = area.next;
     }
     return vec2<f32>(clamp(found.x * found.y, 0.0, 500.0), even);
 }

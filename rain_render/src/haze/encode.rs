@@ -1,8 +1,8 @@
 //! Commands of the pass.
 
-use super::prepare::{HazeGpu, HazeKey, HazeViewGpu};
+use super::prepare::{HazeGpu, HazeViewGpu};
 use crate::compose::{HAZE_AZIMUTHS, HAZE_INTERVALS};
-use crate::rainfall::COVERAGE_FORMAT;
+use crate::overlay::OverlayKey;
 
 /// Integrates the extinction of areas around the eye, if there are any.
 pub fn encode_haze_areas(pass: &mut wgpu::ComputePass, gpu: &HazeGpu, view: &HazeViewGpu) {
@@ -24,16 +24,16 @@ pub fn encode_haze(
     format: wgpu::TextureFormat,
     samples: u32,
 ) {
-    encode(pass, gpu, view, HazeKey::colour(format, samples));
+    encode(pass, gpu, view, OverlayKey::colour(format, samples), samples);
 }
 
-/// Draws what it obscures into a [`COVERAGE_FORMAT`] target; the scene's depth must have one sample.
+/// Draws what it obscures into a [`COVERAGE_FORMAT`](crate::rainfall::COVERAGE_FORMAT) target; the scene's depth must have one sample.
 pub fn encode_haze_coverage(pass: &mut wgpu::RenderPass, gpu: &HazeGpu, view: &HazeViewGpu) {
-    encode(pass, gpu, view, HazeKey::coverage(COVERAGE_FORMAT));
+    encode(pass, gpu, view, OverlayKey::coverage(1), 1);
 }
 
-fn encode(pass: &mut wgpu::RenderPass, gpu: &HazeGpu, view: &HazeViewGpu, key: HazeKey) {
-    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(&key)) else {
+fn encode(pass: &mut wgpu::RenderPass, gpu: &HazeGpu, view: &HazeViewGpu, key: OverlayKey, samples: u32) {
+    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.overlay(samples).get(key)) else {
         return;
     };
     pass.set_pipeline(pipeline);

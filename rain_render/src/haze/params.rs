@@ -2,6 +2,7 @@
 
 use glam::{Mat4, Vec3, Vec4};
 use rain_core::haze::{FOG_TABLE_KNOTS, LEAST_LAMP_M, RATE_KNOTS, RateExtinction};
+use rain_core::rainfall::Lamp;
 use rain_core::rainfall::areas::AreaFieldF32;
 
 use crate::compose::{HAZE_AZIMUTHS, HAZE_FIRST_M, HAZE_INTERVALS};
@@ -10,19 +11,6 @@ use crate::rainfall::Lighting;
 
 /// Most lamps that glow in a view.
 pub const MAX_HAZE_LAMPS: usize = 16;
-
-/// A lamp near the view.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GlowingLamp {
-    /// From the eye. Units: m.
-    pub place_m: Vec3,
-    /// Units: m. At least 0.05.
-    pub radius_m: f32,
-    /// Luminous intensity by colour. Units: cd, times the exposure in [`HazeInput`].
-    pub intensity_cd: Vec3,
-    /// Where it shines, and the cosines of its outer and inner half angles; `None`: all around.
-    pub cone: Option<(Vec3, [f32; 2])>,
-}
 
 /// Areas that divide the rain.
 #[derive(Debug, Clone, Copy)]
@@ -73,10 +61,8 @@ pub struct HazeInput<'a> {
     pub limit_m: f32,
     /// `None`: the haze of the rain.
     pub fog: Option<HazeFog>,
-    /// The first [`MAX_HAZE_LAMPS`] glow.
-    pub lamps: &'a [GlowingLamp],
-    /// Exposure of the lamps.
-    pub exposure: f32,
+    /// Relative to the eye, intensities exposed; the first [`MAX_HAZE_LAMPS`] glow, no smaller than 5 cm.
+    pub lamps: &'a [Lamp],
 }
 
 /// First azimuth and step of the grid so that it holds every direction in sight, from +X towards +Z. Units: rad.
@@ -130,11 +116,11 @@ impl HazeInput<'_> {
         let [start, step] = azimuths(eye_from_clip, self.forward);
         let mut lamp: [HazeLamp; MAX_HAZE_LAMPS] = bytemuck::Zeroable::zeroed();
         for (slot, lamp) in lamp.iter_mut().zip(self.lamps) {
-            let (axis, [outer, inner]) = lamp.cone.unwrap_or((Vec3::NEG_Y, [-1.0; 2]));
+            let radius = lamp.radius_m.max(LEAST_LAMP_M as f32);
             *slot = HazeLamp {
-                place: lamp.place_m.extend(lamp.radius_m.max(LEAST_LAMP_M as f32)).to_array(),
-                light: (lamp.intensity_cd * self.exposure).extend(outer).to_array(),
-                axis: axis.extend(inner).to_array(),
+                place: lamp.position_m.extend(radius).to_array(),
+                light: lamp.intensity.extend(lamp.cos_outer).to_array(),
+                axis: lamp.direction.extend(lamp.cos_inner).to_array(),
             };
         }
         let fours = |values: &[f32; 64]| core::array::from_fn(|i| core::array::from_fn(|k| values[4 * i + k]));

@@ -1,7 +1,5 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
-use std::collections::HashMap;
-
 use rain_core::rainfall::areas::MAX_PACKED_ROWS;
 
 use super::HazeInput;
@@ -10,41 +8,7 @@ use crate::bindings::{
 };
 use crate::compose::{self, HAZE_AZIMUTHS, HAZE_INTERVALS};
 use crate::gpu_types::HazeView;
-
-/// What draw pipelines differ by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct HazeKey {
-    format: wgpu::TextureFormat,
-    samples: u32,
-    /// What is obscured instead of colour.
-    coverage: bool,
-}
-
-impl HazeKey {
-    pub(super) fn colour(format: wgpu::TextureFormat, samples: u32) -> Self {
-        Self {
-            format,
-            samples,
-            coverage: false,
-        }
-    }
-
-    pub(super) fn coverage(format: wgpu::TextureFormat) -> Self {
-        Self {
-            format,
-            samples: 1,
-            coverage: true,
-        }
-    }
-}
-
-/// Shader and layout for a scene's depth with one or with more samples.
-#[derive(Debug)]
-struct Sampled {
-    layout: wgpu::BindGroupLayout,
-    pipeline_layout: wgpu::PipelineLayout,
-    shader: wgpu::ShaderModule,
-}
+use crate::overlay::{Overlay, OverlayKey};
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
@@ -52,9 +16,9 @@ pub struct HazeGpu {
     areas_layout: wgpu::BindGroupLayout,
     pub(super) spread: wgpu::ComputePipeline,
     pub(super) add: wgpu::ComputePipeline,
-    single: Sampled,
-    several: Option<Sampled>,
-    pub(super) draw: HashMap<HazeKey, wgpu::RenderPipeline>,
+    /// For a scene's depth with one sample, and with more.
+    single: Overlay,
+    several: Option<Overlay>,
     no_environment: wgpu::TextureView,
     sampler: wgpu::Sampler,
 }
@@ -82,56 +46,42 @@ pub struct HazeViewGpu {
 const GRID_BYTES: usize = HAZE_AZIMUTHS as usize * (HAZE_INTERVALS as usize + 1) * 4;
 const ROWS_BYTES: usize = (MAX_PACKED_ROWS + 1) * 16;
 
-impl Sampled {
-    fn new(device: &wgpu::Device, multisampled: bool) -> Self {
-        let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let fragment = wgpu::ShaderStages::FRAGMENT;
-        let mut depth = texture_entry(
-            2,
-            raster,
-            wgpu::TextureSampleType::Depth,
-            wgpu::TextureViewDimension::D2,
-        );
-        if let wgpu::BindingType::Texture {
-            multisampled: several, ..
-        } = &mut depth.ty
-        {
-            *several = multisampled;
-        }
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("rain haze"),
-            entries: &[
-                uniform_entry(0, raster, size_of::<HazeView>()),
-                storage_entry(1, fragment, true),
-                depth,
-                texture_entry(
-                    3,
-                    fragment,
-                    wgpu::TextureSampleType::Float { filterable: true },
-                    wgpu::TextureViewDimension::Cube,
-                ),
-                sampler_entry(4, fragment),
-            ],
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain haze"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let source = if multisampled {
-            compose::haze_of_samples()
-        } else {
-            compose::module("haze")
-        };
-        Self {
-            layout,
-            pipeline_layout,
-            shader: device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("haze"),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            }),
-        }
+fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
+    let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
+    let fragment = wgpu::ShaderStages::FRAGMENT;
+    let mut depth = texture_entry(
+        2,
+        raster,
+        wgpu::TextureSampleType::Depth,
+        wgpu::TextureViewDimension::D2,
+    );
+    if let wgpu::BindingType::Texture {
+        multisampled: several, ..
+    } = &mut depth.ty
+    {
+        *several = multisampled;
     }
+    let entries = [
+        uniform_entry(0, raster, size_of::<HazeView>()),
+        storage_entry(1, fragment, true),
+        depth,
+        texture_entry(
+            3,
+            fragment,
+            wgpu::TextureSampleType::Float { filterable: true },
+            wgpu::TextureViewDimension::Cube,
+        ),
+        sampler_entry(4, fragment),
+    ];
+    let shader = if multisampled {
+        device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("haze"),
+            source: wgpu::ShaderSource::Wgsl(compose::haze_of_samples().into()),
+        })
+    } else {
+        compose::shader(device, "haze")
+    };
+    Overlay::untested(device, "rain haze", shader, &entries)
 }
 
 impl HazeGpu {
@@ -154,9 +104,8 @@ impl HazeGpu {
             areas_layout,
             spread,
             add,
-            single: Sampled::new(device, false),
+            single: overlay(device, false),
             several: None,
-            draw: HashMap::new(),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
             sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
         }
@@ -170,64 +119,20 @@ impl HazeGpu {
         samples: u32,
         coverage: bool,
     ) {
-        if samples > 1 && self.several.is_none() {
-            self.several = Some(Sampled::new(device, true));
-        }
-        let mut keys = vec![HazeKey::colour(format, samples)];
+        let overlay = if samples > 1 {
+            self.several.get_or_insert_with(|| overlay(device, true))
+        } else {
+            &mut self.single
+        };
+        overlay.prepare(device, OverlayKey::colour(format, samples));
         if coverage && samples == 1 {
-            keys.push(HazeKey::coverage(crate::rainfall::COVERAGE_FORMAT));
-        }
-        for key in keys {
-            if !self.draw.contains_key(&key) {
-                let pipeline = pipeline(device, self.sampled(key.samples), key);
-                self.draw.insert(key, pipeline);
-            }
+            overlay.prepare(device, OverlayKey::coverage(samples));
         }
     }
 
-    fn sampled(&self, samples: u32) -> &Sampled {
+    pub(super) fn overlay(&self, samples: u32) -> &Overlay {
         self.several.as_ref().filter(|_| samples > 1).unwrap_or(&self.single)
     }
-}
-
-fn pipeline(device: &wgpu::Device, sampled: &Sampled, key: HazeKey) -> wgpu::RenderPipeline {
-    let add = |src_factor, dst_factor| wgpu::BlendComponent {
-        src_factor,
-        dst_factor,
-        operation: wgpu::BlendOperation::Add,
-    };
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("rain haze"),
-        layout: Some(&sampled.pipeline_layout),
-        vertex: wgpu::VertexState {
-            module: &sampled.shader,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState {
-            count: key.samples,
-            ..Default::default()
-        },
-        fragment: Some(wgpu::FragmentState {
-            module: &sampled.shader,
-            entry_point: Some(if key.coverage { "coverage" } else { "colour" }),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: key.format,
-                blend: Some(wgpu::BlendState {
-                    color: add(wgpu::BlendFactor::One, wgpu::BlendFactor::OneMinusSrcAlpha),
-                    // The target's own alpha stays what the scene made it.
-                    alpha: add(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One),
-                }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
 
 impl HazeViewGpu {
@@ -288,7 +193,7 @@ impl HazeViewGpu {
         let environment = textures.environment.unwrap_or(&gpu.no_environment);
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain haze"),
-            layout: &gpu.sampled(samples).layout,
+            layout: &gpu.overlay(samples).layout,
             entries: &[
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, self.grid.as_entire_binding()),

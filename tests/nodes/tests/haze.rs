@@ -5,9 +5,9 @@ use rain_core::haze::{
     FogTable, HazeSharing, LUMA_LINEAR, RateExtinction, cone_span_m, desaturated, extinction_per_m, lamp_glow_per_m,
 };
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32, AreaRain, AreaSettings, AreaShape};
-use rain_core::rainfall::{CLASS_COUNT, Distribution, Spectrum};
+use rain_core::rainfall::{CLASS_COUNT, Distribution, Lamp, Spectrum};
 use rain_render::haze::{
-    GlowingLamp, HazeAreas, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    HazeAreas, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
 };
 use rain_render::rainfall::{DEPTH_FORMAT, Lighting};
 
@@ -34,7 +34,7 @@ struct Shot<'a> {
     areas: Option<HazeAreas<'a>>,
     cloud_m: f32,
     fog: Option<HazeFog>,
-    lamps: &'a [GlowingLamp],
+    lamps: &'a [Lamp],
     ambient: Vec3,
     background: [f64; 3],
     /// Distance of a wall across the view; none: sky.
@@ -131,7 +131,6 @@ impl Shot<'_> {
             limit_m: LIMIT_M,
             fog: self.fog,
             lamps: self.lamps,
-            exposure: 1.0,
         };
         let mut haze = HazeGpu::new(&gpu.device);
         haze.prepare_pipelines(&gpu.device, COLOUR, self.samples, false);
@@ -433,17 +432,12 @@ fn a_lamp_glows_as_its_integral_says() {
     let rate = 50.0;
     let geometric = extinction_per_m(&spectrum(rate), 1.0);
     let lamps = [
-        GlowingLamp {
-            place_m: Vec3::new(2.0, 1.0, -20.0),
-            radius_m: 0.05,
-            intensity_cd: Vec3::new(400.0, 300.0, 200.0),
-            cone: None,
-        },
-        GlowingLamp {
-            place_m: Vec3::new(-3.0, 4.0, -15.0),
-            radius_m: 0.1,
-            intensity_cd: Vec3::splat(500.0),
-            cone: Some((Vec3::NEG_Y, [0.7, 0.7])),
+        Lamp::point(Vec3::new(2.0, 1.0, -20.0), Vec3::new(400.0, 300.0, 200.0), 0.05),
+        Lamp {
+            direction: Vec3::NEG_Y,
+            cos_inner: 0.7,
+            cos_outer: 0.7,
+            ..Lamp::point(Vec3::new(-3.0, 4.0, -15.0), Vec3::splat(500.0), 0.1)
         },
     ];
     for wall in [Some(12.0), Some(60.0), None] {
@@ -458,8 +452,9 @@ fn a_lamp_glows_as_its_integral_says() {
             let mut lit = 0;
             shot.each(&gpu, |towards, rgb| {
                 let (mut from, mut to) = (0.0, shot.way(towards));
-                if let Some((axis, [cosine, _])) = lamp.cone {
-                    let span = cone_span_m(lamp.place_m.as_dvec3(), axis.as_dvec3(), cosine.into(), towards);
+                if lamp.cos_outer > -1.0 {
+                    let axis = lamp.direction.as_dvec3();
+                    let span = cone_span_m(lamp.position_m.as_dvec3(), axis, lamp.cos_outer.into(), towards);
                     (from, to) = (span[0], span[1].min(to));
                 }
                 // Behind the wall the eye does not see it.
@@ -467,10 +462,10 @@ fn a_lamp_glows_as_its_integral_says() {
                 let glow = if hidden {
                     0.0
                 } else {
-                    let place = lamp.place_m.as_dvec3();
+                    let place = lamp.position_m.as_dvec3();
                     lamp_glow_per_m(place, towards, from, to, lamp.radius_m.into(), 2.0 * geometric)
                 };
-                for (found, own) in rgb.into_iter().zip(lamp.intensity_cd.as_dvec3().to_array()) {
+                for (found, own) in rgb.into_iter().zip(lamp.intensity.as_dvec3().to_array()) {
                     let expected = own * glow * geometric;
                     // Single precision at a cone's edge: the angle from the apex to 1e-6.
                     assert!(

@@ -163,4 +163,14 @@ fn wipers_clear_a_windscreen_and_a_bad_setting_is_named() {
         .iter_current_update_messages()
         .any(|e| e.error.to_string().contains("distance_m"));
     assert!(named);
+    // The last good ones stay in force: drops lie where a lens at its default distance has no glass.
+    test.reset();
+    test.frames(30, FRAME);
+    assert_eq!(test.recorded(PassName::Lens), 30);
+    let outside = glass(&test)
+        .glass()
+        .drops()
+        .iter()
+        .filter(|drop| drop.place_m[0].abs() > 0.1);
+    assert!(outside.count() > 50);
 }
