@@ -26,6 +26,7 @@
 //! | [`haze::HazePlugin`] | haze of rain, far showers, glow of lamps |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
+//! | [`lightning::LightningPlugin`] | flashes of storms that ask for them, and their light |
 //! | [`lens::LensPlugin`] | drops on the glass of cameras that ask for it |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
@@ -34,6 +35,7 @@
 pub mod cover;
 pub mod haze;
 pub mod lens;
+pub mod lightning;
 pub mod rainfall;
 pub mod render_adapter;
 pub mod report;
@@ -68,6 +70,7 @@ impl PluginGroup for RainPlugins {
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
             .add(lens::LensPlugin)
+            .add(lightning::LightningPlugin)
     }
 }
 
@@ -100,6 +103,7 @@ pub mod prelude {
     pub use crate::cover::CoverSettings;
     pub use crate::haze::{ArtistFog, HazeMask, HazePlugin, HazeSettings};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
+    pub use crate::lightning::{LightningLight, LightningLook};
     pub use crate::rainfall::{CardSettings, RainView};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
@@ -111,8 +115,8 @@ pub mod prelude {
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
-        RainPlugins, cover::CoverPlugin, lens::LensPlugin, rainfall::RainfallPlugin, splash::SplashPlugin,
-        surface::WetSurfacePlugin, waves::WavesPlugin,
+        RainPlugins, cover::CoverPlugin, lens::LensPlugin, lightning::LightningPlugin, rainfall::RainfallPlugin,
+        splash::SplashPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
     };
     pub use rain_core::lens::{WiperArm, WiperMode};
     pub use rain_core::surface::SurfaceState;

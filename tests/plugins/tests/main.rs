@@ -13,6 +13,7 @@ mod groups;
 mod haze;
 mod large_scene;
 mod lens;
+mod lightning;
 mod looks;
 mod materials;
 mod mirrors;
