@@ -2,7 +2,6 @@
 
 use std::f32::consts::PI;
 
-use bevy::camera::Exposure;
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::ecs::system::SystemParam;
 use bevy::light::{DirectionalLight, GlobalAmbientLight, NotShadowCaster, NotShadowReceiver, Skybox};
@@ -20,7 +19,7 @@ use crate::render_adapter::LightningMaterial;
 use crate::surface::{KeepDry, MovesInRain};
 
 /// Colour of a channel of some 25 000 K, of luminance 1. Linear.
-const COLOUR: Vec3 = Vec3::new(0.86, 0.98, 1.6);
+const COLOUR: Vec3 = Vec3::new(0.78, 0.96, 2.0);
 /// Shortest time that light is averaged over: an eye's and a camera's exposure. Units: s.
 const EXPOSURE_S: f32 = 1.0 / 60.0;
 /// Longest: of the frames that take longer, the last part. Units: s.
@@ -80,6 +79,8 @@ impl Added {
 pub(super) struct Shown {
     light: Option<Entity>,
     glow_mesh: Option<Handle<Mesh>>,
+    /// Kept: what is dropped in the frame after it was added is still on its way to the GPU.
+    warm_mesh: Option<Handle<Mesh>>,
     slots: Vec<Slot>,
     ambient: Added,
     skies: Vec<(Entity, Added)>,
@@ -88,11 +89,11 @@ pub(super) struct Shown {
     good: LightningLook,
 }
 
-/// Whether a flash may be on, or the last frame showed one.
+/// Whether a flash may be on, the last frame showed one, or a storm has just begun.
 pub(super) fn something_flashes(clock: Res<RainClock>, sky: Res<ActiveLightning>, shown: Res<Shown>) -> bool {
     let now_s = frame_time(&clock);
     let on = |active: &ActiveFlash| active.flash.time_s <= now_s && active.flash.time_s + LONGEST_FLASH_S + 0.2 > now_s;
-    shown.lit || sky.flashes().iter().any(on)
+    shown.lit || (sky.is_on() && shown.slots.is_empty()) || sky.flashes().iter().any(on)
 }
 
 /// Time that the frame shows. Units: s.
@@ -200,6 +201,9 @@ pub(super) fn show_lightning(
         on.push((active, light, currents, eye));
     }
     shown.lit = !on.is_empty();
+    if look.enabled && shown.slots.is_empty() {
+        warm_up(&mut commands, shown, &mut lit);
+    }
     light_scene(&mut commands, shown, &mut lit, direct, towards, ambient, look.shadows);
     show_channels(&mut commands, shown, &mut lit, &on, extinction);
 }
@@ -341,6 +345,23 @@ fn show_channels(
             }
         }
     }
+}
+
+/// Draws nothing that is seen until the first flash, so that it need not wait for its pipelines.
+fn warm_up(commands: &mut Commands, shown: &mut Shown, lit: &mut Lit) {
+    let (Some(meshes), Some(materials)) = (&mut lit.meshes, &mut lit.materials) else {
+        return;
+    };
+    let slot = new_slot(commands, materials);
+    let line = [DVec3::ZERO, DVec3::Y];
+    let mesh = meshes.add(shapes::tubes(std::iter::once(line.as_slice()), DVec3::ZERO, 0.0));
+    for part in slot.parts {
+        commands
+            .entity(part)
+            .insert((Mesh3d(mesh.clone()), Visibility::Visible));
+    }
+    shown.warm_mesh = Some(mesh);
+    shown.slots.push(slot);
 }
 
 fn new_slot(commands: &mut Commands, materials: &mut Assets<LightningMaterial>) -> Slot {
