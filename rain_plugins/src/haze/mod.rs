@@ -7,6 +7,6 @@ mod lamps;
 mod settings;
 mod view;
 
-pub use settings::{ArtistFog, HazeSettings, MAX_HAZE_LIMIT_M};
+pub use settings::{ArtistFog, HazeSettings, HazeSky, MAX_HAZE_LIMIT_M};
 pub(crate) use view::HazeShot;
 pub use view::{HazeMask, HazePlugin, HazeViewFrame};

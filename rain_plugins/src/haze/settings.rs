@@ -31,6 +31,18 @@ pub struct HazeSettings {
     pub artist: Option<ArtistFog>,
 }
 
+/// The open sky that lights a view's haze, where the camera's [`EnvironmentMapLight`](bevy::light::EnvironmentMapLight)
+/// holds what stands about it: rain far away stands under the sky, not among the houses near the eye. Without it haze takes
+/// the camera's map.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component)]
+pub struct HazeSky {
+    /// Prefiltered cube map, as of an `EnvironmentMapLight`.
+    pub specular_map: Handle<Image>,
+    /// Its scale to luminance. Units: cd/m².
+    pub intensity: f32,
+}
+
 /// Fog the artists' way (Lagarde 2013): denser in heavier rain, losing its colour as the rain sets in. Nothing physical.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Default)]

@@ -14,7 +14,7 @@ use rain_ecs::prelude::*;
 use rain_render::haze::HazeFog;
 
 use super::lamps::glowing;
-use super::settings::HazeSettings;
+use super::settings::{HazeSettings, HazeSky};
 use crate::cover::AirAroundView;
 use crate::rainfall::{CardViewFrame, RainView, RainViewFrame, SceneLamps, fill_cards};
 use crate::render_adapter::let_depth_be_read;
@@ -127,6 +127,7 @@ pub struct HazePlugin;
 impl Plugin for HazePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<HazeSettings>()
+            .register_type::<HazeSky>()
             .init_resource::<AirAroundView>()
             .add_systems(
                 PostUpdate,

@@ -19,6 +19,7 @@ use rain_render::water_map::WaterMapPlace;
 
 use super::{RainMasks, WaveLevels};
 use crate::cover::CoverMap;
+use crate::haze::HazeSky;
 use crate::rainfall::{RainViewFrame, ViewLamps, ViewMotion};
 use crate::surface::{
     GroundFilms, GroundMap, MapHandover, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages,
@@ -36,6 +37,8 @@ pub(super) struct ExtractedRainView {
     pub focal_px: f32,
     /// Prefiltered cube map and its scale to cd/m².
     pub environment: Option<(AssetId<Image>, f32)>,
+    /// The same of the open sky, for haze.
+    pub sky: Option<(AssetId<Image>, f32)>,
     pub masks: Option<RainMasks>,
     pub lamps: ViewLamps,
 }
@@ -225,6 +228,7 @@ pub(super) fn extract_rain(
             &RainViewFrame,
             &Camera,
             Option<&EnvironmentMapLight>,
+            Option<&HazeSky>,
             Option<&RainMasks>,
             &ViewLamps,
         )>,
@@ -273,19 +277,21 @@ pub(super) fn extract_rain(
             shown: surface.shown,
         }),
     });
-    for (entity, frame, camera, environment, masks, lamps) in &views {
+    for (entity, frame, camera, environment, sky, masks, lamps) in &views {
         let mut entity = commands.entity(entity);
         if !camera.is_active {
             entity.remove::<ExtractedRainView>();
             continue;
         }
+        let environment = environment.map(|e| (e.specular_map.id(), e.intensity));
         entity.insert(ExtractedRainView {
             container: frame.container.clone(),
             seed: frame.seed,
             shutter: frame.shutter,
             motion: frame.motion,
             focal_px: frame.focal_px,
-            environment: environment.map(|e| (e.specular_map.id(), e.intensity)),
+            environment,
+            sky: sky.map(|s| (s.specular_map.id(), s.intensity)).or(environment),
             masks: masks.cloned(),
             lamps: lamps.clone(),
         });

@@ -112,7 +112,7 @@ pub(super) fn prepare_haze(
         hazes
             .gpu
             .prepare_pipelines(device, view.target_format, samples, haze.mask.is_some());
-        let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
+        let environment = rain.sky.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         // In the heaviest rain of the view; what does not show there shows nowhere.
         let densest = shot.rates.ln_per_m.last().map_or(0.0, |ln| ln.exp());
         let extinction = if shot.areas.is_some() {

@@ -1,8 +1,13 @@
 //! Haze in a Bevy app: when it is drawn and when it is skipped, and that drops and haze share one optical depth.
 
+use bevy::asset::RenderAssetUsages;
 use bevy::ecs::system::RunSystemOnce;
+use bevy::light::EnvironmentMapLight;
 use bevy::prelude::*;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
+use bevy::render::render_resource::{
+    Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+};
 use image::RgbImage;
 use rain_core::haze::{HazeSharing, extinction_per_m};
 use rain_core::rainfall::areas::{AreaRain, AreaSettings, AreaShape};
@@ -359,4 +364,61 @@ fn a_lamp_has_a_halo_in_rain_that_fades_outwards_and_none_behind_a_wall() {
     assert!(dry.iter().all(|v| *v < 1.0), "{dry:?}");
     assert!(wet[0] > 20.0 && wet.windows(2).all(|w| w[0] > w[1]), "{wet:?}");
     assert!(hidden.iter().all(|v| *v < 2.0), "{hidden:?}");
+}
+
+/// A cube map of one colour.
+fn surroundings(test: &mut TestApp, colour: [bool; 3]) -> Handle<Image> {
+    // Half floats: one and zero.
+    let channel = |lit: bool| if lit { 0x3c00_u16 } else { 0 }.to_le_bytes();
+    let [r, g, b] = colour.map(channel);
+    let texel = [r, g, b, channel(true)].concat();
+    let mut image = Image::new(
+        Extent3d {
+            width: 4,
+            height: 4,
+            depth_or_array_layers: 6,
+        },
+        TextureDimension::D2,
+        texel.repeat(16 * 6),
+        TextureFormat::Rgba16Float,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::Cube),
+        ..default()
+    });
+    test.world().resource_mut::<Assets<Image>>().add(image)
+}
+
+#[test]
+fn the_open_sky_lights_far_rain_where_it_is_given_and_the_cameras_surroundings_do_otherwise() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = hazy();
+    test.world().spawn(Weather::rain(60.0));
+    let [red, blue] = [[true, false, false], [false, false, true]].map(|c| surroundings(&mut test, c));
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(EnvironmentMapLight {
+        diffuse_map: red.clone(),
+        specular_map: red,
+        intensity: 4000.0,
+        ..default()
+    });
+    // Nothing but air: what is seen above the horizon is haze.
+    test.look(Vec3::new(0.0, 12.0, 0.0), Vec3::new(0.0, 14.0, -10.0));
+    test.frames(10, FRAME);
+    let seen = |test: &mut TestApp| {
+        let picture = test.picture();
+        picture.get_pixel(SIZE[0] / 2, SIZE[1] / 2).0.map(i32::from)
+    };
+    let [r, _, b] = seen(&mut test);
+    assert!(r > b + 60, "surroundings alone: {r} red, {b} blue");
+    test.world().entity_mut(camera).insert(HazeSky {
+        specular_map: blue,
+        intensity: 4000.0,
+    });
+    test.frames(6, FRAME);
+    let [r, _, b] = seen(&mut test);
+    assert!(b > r + 60, "under a sky: {r} red, {b} blue");
 }
