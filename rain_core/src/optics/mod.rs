@@ -1,4 +1,4 @@
-//! Light at a water surface and in a drop: Fresnel, refraction, energy split, radiance.
+//! Light at a water surface and in a drop: Fresnel, refraction, energy split, radiance, rainbows.
 //!
 //! # Accuracy of what a drop shows
 //! Against rays traced through the outline of Beard & Chuang with all inner reflections, relative L1 of the radiance
@@ -20,6 +20,7 @@ mod drop_body;
 mod drop_radiance;
 mod energy;
 mod fresnel;
+mod rainbow;
 mod refraction;
 
 pub use drop_body::{DropBody, DropRay};
@@ -28,6 +29,9 @@ pub use energy::{EnergySplit, energy_split, retro_reflection, sphere_order_share
 pub use fresnel::{
     Polarised, brewster_rad, critical_angle_rad, fresnel, fresnel_f32, fresnel_from_inside, fresnel_polarised,
     hemispherical_mean, hemispherical_mean_inside, normal_reflectance, schlick, schlick_f32,
+};
+pub use rainbow::{
+    BOW_KNOTS, BOW_SPAN_DEG, BOW_STEP_DEG, BowRays, RainbowPhase, RainbowTables, bow_place, water_index,
 };
 pub use refraction::{
     Bow, deviation_rad, deviation_sin_cos_f32, disc_share_within, field_of_view_rad, impact_of_deviation, rainbow,

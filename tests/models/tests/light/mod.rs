@@ -4,6 +4,7 @@ mod drop;
 mod formulas;
 mod fresnel;
 mod haze;
+mod rainbow;
 mod sharing;
 mod sphere;
 mod streak;

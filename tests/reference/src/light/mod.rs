@@ -2,6 +2,7 @@
 
 pub mod drop;
 pub mod haze;
+pub mod rainbow;
 pub mod sphere;
 pub mod streak;
 
