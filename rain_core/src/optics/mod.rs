@@ -16,6 +16,7 @@
 //! rays miss 0.26, 0.28, 0.75 under the overcast sky, three 0.04, 0.07, 0.3. The cheap tier's mean over
 //! the disc (for drops smaller than a pixel) is within 0.08 looking level or up, and up to 0.57 too dark looking down.
 
+mod cloud;
 mod drop_body;
 mod drop_radiance;
 mod energy;
@@ -23,6 +24,9 @@ mod fresnel;
 mod rainbow;
 mod refraction;
 
+pub use cloud::{
+    CLOUD_ASYMMETRY, CLOUD_DROP_RADIUS_M, RAIN_COLUMN_M, cloud_optical_depth, cloud_transmittance, cloud_water_kg_m2,
+};
 pub use drop_body::{DropBody, DropRay};
 pub use drop_radiance::{CHEAP_REFLECTED, CHEAP_REFRACTED, DropLight, DropRays, drop_light, drop_rays_f32};
 pub use energy::{EnergySplit, energy_split, retro_reflection, sphere_order_share};

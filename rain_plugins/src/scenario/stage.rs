@@ -28,6 +28,7 @@ use super::run::RunError;
 use super::sky::{Cube, Handedness, SkyModel, generate};
 use crate::haze::HazeSettings;
 use crate::lens::{LensDrops, WindscreenWipers};
+use crate::rainbow::Rainbow;
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
 use crate::surface::{KeepDry, MovesInRain, PlanarReflection, WaterLevels};
@@ -316,6 +317,12 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             glow: scenario.rain.glow as f32,
             ..default()
         });
+        if scenario.rain.rainbow > 0.0 {
+            camera.insert(Rainbow {
+                strength: scenario.rain.rainbow as f32,
+                ..default()
+            });
+        }
         if environment.reflection {
             camera.insert(PlanarReflection::default());
         }

@@ -1,5 +1,6 @@
 //! Fresnel reflection, refraction in a drop, streaks, extinction.
 
+mod cloud;
 mod drop;
 mod formulas;
 mod fresnel;

@@ -276,5 +276,13 @@ fn bows_answer_every_number() {
         before = place;
     }
     assert!((before - (BOW_KNOTS - 1) as f64).abs() < 1e-12 && bow_place(0.0) == 0.0);
+    // At an entry: that entry.
+    let bow = tables().of_radius(1e-4);
+    let greatest = bow.rgb_per_sr.iter().flatten().fold(0.0_f32, |a, b| a.max(*b));
+    for (degrees, entry) in [(0.0_f64, 0), (30.0, 30), (41.0, 118), (180.0, 375)] {
+        for (found, own) in bow.per_sr(degrees.to_radians()).into_iter().zip(bow.rgb_per_sr[entry]) {
+            assert!((found - f64::from(own)).abs() < 1e-6 * f64::from(greatest), "{degrees}");
+        }
+    }
     assert!((bow_place(30.0_f64.to_radians()) - 30.0).abs() < 1e-12);
 }

@@ -1,5 +1,6 @@
 //! Fresnel reflection, refraction in a drop, streaks, extinction.
 
+pub mod cloud;
 pub mod drop;
 pub mod haze;
 pub mod rainbow;
