@@ -20,6 +20,8 @@ pub enum PassName {
     Reflection,
     /// Haze of rain.
     Haze,
+    /// Rainbows, in the haze's pass.
+    Rainbow,
     /// Streak textures, made once.
     StreakTextures,
     /// Splashes of rain.
@@ -45,6 +47,7 @@ impl PassName {
             Self::Waves => "waves",
             Self::Reflection => "reflection",
             Self::Haze => "haze",
+            Self::Rainbow => "rainbow",
             Self::StreakTextures => "streak_textures",
             Self::Splash => "splash",
             Self::Lattice => "lattice",
@@ -78,6 +81,10 @@ pub enum SkipReason {
     NoView,
     /// Too little to be seen.
     Negligible,
+    /// There is no sun, or its light is 0.
+    NoSun,
+    /// The view shows no haze.
+    NoHaze,
     /// Turned off by a setting.
     Disabled,
     /// The view's projection or sample count is not supported by the pass.
@@ -99,6 +106,8 @@ impl SkipReason {
             Self::NothingMoved => "nothing moved",
             Self::NoView => "no view",
             Self::Negligible => "negligible",
+            Self::NoSun => "no sun",
+            Self::NoHaze => "no haze",
             Self::Disabled => "disabled",
             Self::Unsupported => "unsupported view",
         }

@@ -3,10 +3,14 @@
 //!
 //! It is seen only: no state depends on it. [`HazeSettings`] on a camera with `RainView` sets it up.
 
+mod area_fog;
 mod lamps;
+mod mirror;
 mod settings;
 mod view;
 
-pub use settings::{ArtistFog, HazeSettings, HazeSky, MAX_HAZE_LIMIT_M};
-pub(crate) use view::HazeShot;
+pub use area_fog::AreaFog;
+pub(crate) use mirror::haze_mirrors;
+pub use settings::{ArtistFog, HazeSettings, HazeSky, MAX_HAZE_LIMIT_M, Mist};
+pub(crate) use view::{BowShot, HazeShot, aim_haze};
 pub use view::{HazeMask, HazePlugin, HazeViewFrame};

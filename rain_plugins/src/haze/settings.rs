@@ -2,6 +2,7 @@
 
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
+use rain_core::haze::{DRY_EXTINCTION_PER_M, HYGROSCOPICITY};
 use rain_render::haze::MAX_HAZE_LAMPS;
 
 /// Longest accepted way through the rain. Units: m.
@@ -29,6 +30,28 @@ pub struct HazeSettings {
     pub glow: f32,
     /// Fog as an artist sets it, in place of the rain's. Default: none.
     pub artist: Option<ArtistFog>,
+    /// Haze of the air itself, which grows into mist and fog with the weather's humidity, with or without rain. Default:
+    /// none.
+    pub mist: Option<Mist>,
+}
+
+/// Particles in the air that take up water (Petters & Kreidenweis 2007): haze in dry air, mist near saturation, fog at it.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default)]
+pub struct Mist {
+    /// Extinction of the dry particles. Units: 1/m. Domain: [0, 1]. Default: 0.0001, clean country air.
+    pub dry_per_m: f32,
+    /// Hygroscopicity κ. Units: none. Domain: [0, 2]. Default: 0.3, mixed particles over land; sea salt has 1.2.
+    pub hygroscopicity: f32,
+}
+
+impl Default for Mist {
+    fn default() -> Self {
+        Self {
+            dry_per_m: DRY_EXTINCTION_PER_M as f32,
+            hygroscopicity: HYGROSCOPICITY as f32,
+        }
+    }
 }
 
 /// The open sky that lights a view's haze, where the camera's [`EnvironmentMapLight`](bevy::light::EnvironmentMapLight)
@@ -81,6 +104,7 @@ impl Default for HazeSettings {
             lamps: MAX_HAZE_LAMPS as u32,
             glow: 1.0,
             artist: None,
+            mist: None,
         }
     }
 }
@@ -98,14 +122,29 @@ impl HazeSettings {
         in_range("lamps", self.lamps.into(), 0.0, MAX_HAZE_LAMPS as f64, "0 to 16")?;
         in_range("glow", self.glow.into(), 0.0, 100.0, "0 to 100")?;
         if let Some(fog) = self.artist {
-            in_range("density_per_m", fog.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
-            in_range("gain", fog.gain.into(), 0.0, 1e3, "0 to 1000")?;
-            in_range("desaturation", fog.desaturation.into(), 0.0, 1.0, "0 to 1")?;
-            in_range("transition_s", fog.transition_s.into(), 0.0, 1e6, "0 to 1e6 s")?;
-            let colour = fog.colour.unwrap_or(LinearRgba::BLACK);
-            for value in [colour.red, colour.green, colour.blue] {
-                in_range("colour", value.into(), 0.0, 1e4, "0 to 1e4")?;
-            }
+            fog.validated()?;
+        }
+        if let Some(mist) = self.mist {
+            in_range("dry_per_m", mist.dry_per_m.into(), 0.0, 1.0, "0 to 1 per m")?;
+            in_range("hygroscopicity", mist.hygroscopicity.into(), 0.0, 2.0, "0 to 2")?;
+        }
+        Ok(self)
+    }
+}
+
+impl ArtistFog {
+    /// These settings, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        in_range("density_per_m", self.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
+        in_range("gain", self.gain.into(), 0.0, 1e3, "0 to 1000")?;
+        in_range("desaturation", self.desaturation.into(), 0.0, 1.0, "0 to 1")?;
+        in_range("transition_s", self.transition_s.into(), 0.0, 1e6, "0 to 1e6 s")?;
+        let colour = self.colour.unwrap_or(LinearRgba::BLACK);
+        for value in [colour.red, colour.green, colour.blue] {
+            in_range("colour", value.into(), 0.0, 1e4, "0 to 1e4")?;
         }
         Ok(self)
     }

@@ -19,7 +19,6 @@ use rain_render::water_map::WaterMapPlace;
 
 use super::{RainMasks, WaveLevels};
 use crate::cover::CoverMap;
-use crate::haze::HazeSky;
 use crate::rainfall::{RainViewFrame, ViewLamps, ViewMotion};
 use crate::surface::{
     GroundFilms, GroundMap, MapHandover, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages,
@@ -37,8 +36,6 @@ pub(super) struct ExtractedRainView {
     pub focal_px: f32,
     /// Prefiltered cube map and its scale to cd/m².
     pub environment: Option<(AssetId<Image>, f32)>,
-    /// The same of the open sky, for haze.
-    pub sky: Option<(AssetId<Image>, f32)>,
     pub masks: Option<RainMasks>,
     pub lamps: ViewLamps,
 }
@@ -228,7 +225,6 @@ pub(super) fn extract_rain(
             &RainViewFrame,
             &Camera,
             Option<&EnvironmentMapLight>,
-            Option<&HazeSky>,
             Option<&RainMasks>,
             &ViewLamps,
         )>,
@@ -277,21 +273,19 @@ pub(super) fn extract_rain(
             shown: surface.shown,
         }),
     });
-    for (entity, frame, camera, environment, sky, masks, lamps) in &views {
+    for (entity, frame, camera, environment, masks, lamps) in &views {
         let mut entity = commands.entity(entity);
         if !camera.is_active {
             entity.remove::<ExtractedRainView>();
             continue;
         }
-        let environment = environment.map(|e| (e.specular_map.id(), e.intensity));
         entity.insert(ExtractedRainView {
             container: frame.container.clone(),
             seed: frame.seed,
             shutter: frame.shutter,
             motion: frame.motion,
             focal_px: frame.focal_px,
-            environment,
-            sky: sky.map(|s| (s.specular_map.id(), s.intensity)).or(environment),
+            environment: environment.map(|e| (e.specular_map.id(), e.intensity)),
             masks: masks.cloned(),
             lamps: lamps.clone(),
         });

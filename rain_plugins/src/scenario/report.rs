@@ -19,6 +19,7 @@ pub const PASS_NAMES: [&str; 13] = [
     "canopy",
     "wheels",
     "haze",
+    "rainbow",
     "lens",
 ];
 

@@ -28,6 +28,7 @@ use super::run::RunError;
 use super::sky::{Cube, Handedness, SPECULAR_PX, SkyModel, generate, prefilter};
 use crate::haze::{HazeSettings, HazeSky};
 use crate::lens::{LensDrops, WindscreenWipers};
+use crate::rainbow::Rainbow;
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
 use crate::surface::{KeepDry, MovesInRain, PlanarReflection, WaterLevels};
@@ -323,6 +324,12 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             specular_map: open,
             intensity: brightness,
         });
+        if scenario.rain.rainbow > 0.0 {
+            camera.insert(Rainbow {
+                strength: scenario.rain.rainbow as f32,
+                ..default()
+            });
+        }
         if environment.reflection {
             camera.insert(PlanarReflection::default());
         }

@@ -9,7 +9,7 @@ use bevy::render::render_resource::{
     Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
 };
 use image::RgbImage;
-use rain_core::haze::{HazeSharing, extinction_per_m};
+use rain_core::haze::{HazeSharing, extinction_per_m, mist_extinction_per_m};
 use rain_core::rainfall::areas::{AreaRain, AreaSettings, AreaShape};
 use rain_core::rainfall::{CLASS_COUNT, DrawRange, SizeClass};
 use rain_plugins::prelude::*;
@@ -364,6 +364,104 @@ fn a_lamp_has_a_halo_in_rain_that_fades_outwards_and_none_behind_a_wall() {
     assert!(dry.iter().all(|v| *v < 1.0), "{dry:?}");
     assert!(wet[0] > 20.0 && wet.windows(2).all(|w| w[0] > w[1]), "{wet:?}");
     assert!(hidden.iter().all(|v| *v < 2.0), "{hidden:?}");
+}
+
+#[test]
+fn humid_air_is_misty_without_rain() {
+    if !gpu::available() {
+        return;
+    }
+    let mut before = 0.0;
+    for humidity in [0.8, 0.98, 0.999] {
+        let mut test = hazy();
+        world::block(
+            test.world(),
+            "wall",
+            Vec3::new(-80.0, -10.0, -201.0),
+            Vec3::new(80.0, 80.0, -200.0),
+            [0.1; 3],
+        );
+        let conditions = WeatherConditions {
+            relative_humidity: humidity,
+            ..WeatherConditions::default()
+        };
+        test.world().spawn(Weather {
+            conditions,
+            ..default()
+        });
+        let mask = with_mask(&mut test);
+        test.look(Vec3::new(0.0, 12.0, 0.0), Vec3::new(0.0, 12.0, -10.0));
+        test.frames(4, FRAME);
+        assert_eq!(test.recorded(PassName::Haze), 0, "off by default");
+        let camera = test.camera;
+        let mist = Mist {
+            dry_per_m: 2e-4,
+            ..default()
+        };
+        test.world().get_mut::<HazeSettings>(camera).expect("settings").mist = Some(mist);
+        test.frames(6, FRAME);
+        assert!(test.recorded(PassName::Haze) > 0);
+        let obscured = read(&mut test, &mask)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize];
+        let extinction = mist_extinction_per_m(humidity, 2e-4, 0.3);
+        let expected = -(-extinction * 200.0).exp_m1();
+        assert!(
+            (obscured - expected).abs() < 2e-3,
+            "{humidity}: {obscured}, not {expected}"
+        );
+        assert!(obscured > before);
+        before = obscured;
+    }
+    assert!(before > 0.5, "fog: {before}");
+}
+
+#[test]
+fn an_area_has_a_fog_of_its_own_that_comes_in_over_its_soft_edge() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = hazy();
+    world::block(
+        test.world(),
+        "wall",
+        Vec3::new(-200.0, -10.0, -61.0),
+        Vec3::new(200.0, 80.0, -60.0),
+        [0.0; 3],
+    );
+    test.world().spawn(Weather::rain(0.0));
+    let fog = ArtistFog {
+        density_per_m: 0.01,
+        colour: Some(LinearRgba::rgb(0.2, 0.5, 1.0)),
+        ..default()
+    };
+    let area = test
+        .world()
+        .spawn((
+            RainArea(AreaSettings {
+                centre_m: bevy::math::DVec2::new(100.0, 0.0),
+                shape: AreaShape::Circle { radius_m: 50.0 },
+                rain: AreaRain::Scale(1.0),
+                transition_m: 40.0,
+                ..default()
+            }),
+            AreaFog(fog),
+        ))
+        .id();
+    let mask = with_mask(&mut test);
+    let mut at = |test: &mut TestApp, x: f32| {
+        test.look(Vec3::new(x, 12.0, 0.0), Vec3::new(x, 12.0, -10.0));
+        test.frames(4, FRAME);
+        read(test, &mask)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize]
+    };
+    let inside = -(-0.01_f64 * 60.0).exp_m1();
+    assert!(at(&mut test, 0.0) < 1e-3, "outside");
+    assert!((at(&mut test, 50.0) - 0.5 * inside).abs() < 2e-3, "on the outline");
+    assert!((at(&mut test, 100.0) - inside).abs() < 2e-3, "inside");
+    let picture = test.picture();
+    let [r, _, b] = picture.get_pixel(SIZE[0] / 2, SIZE[1] / 2).0.map(i32::from);
+    assert!(b > r + 20, "its colour: {r} {b}");
+    // One that is refused does not count.
+    test.world().get_mut::<AreaFog>(area).expect("a fog").0.density_per_m = f32::NAN;
+    assert!(at(&mut test, 100.0) < 1e-3);
 }
 
 /// A cube map of one colour.
