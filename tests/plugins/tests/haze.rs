@@ -500,7 +500,7 @@ fn the_open_sky_lights_far_rain_where_it_is_given_and_the_cameras_surroundings_d
     test.world().entity_mut(camera).insert(EnvironmentMapLight {
         diffuse_map: red.clone(),
         specular_map: red,
-        intensity: 4000.0,
+        intensity: 800.0,
         ..default()
     });
     // Nothing but air: what is seen above the horizon is haze.
@@ -514,7 +514,7 @@ fn the_open_sky_lights_far_rain_where_it_is_given_and_the_cameras_surroundings_d
     assert!(r > b + 60, "surroundings alone: {r} red, {b} blue");
     test.world().entity_mut(camera).insert(HazeSky {
         specular_map: blue,
-        intensity: 4000.0,
+        intensity: 800.0,
     });
     test.frames(6, FRAME);
     let [r, _, b] = seen(&mut test);
