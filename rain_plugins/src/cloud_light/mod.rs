@@ -98,9 +98,15 @@ impl<T: Copy + PartialEq> Held<T> {
         self.written = Some(new);
         (new != value).then_some(new)
     }
+
+    /// The app's own value, where that was written over.
+    fn restored(&self, value: T) -> Option<T> {
+        (self.written == Some(value)).then_some(self.own)
+    }
 }
 
-/// How far the clouds have gathered about what carries [`CloudLight`].
+/// How far the clouds have gathered about what carries [`CloudLight`], and the light without them, which comes back when
+/// that is removed.
 #[derive(Component, Clone, Debug, Default)]
 pub struct CloudLightState {
     settings: CloudLight,
@@ -143,7 +149,9 @@ pub struct CloudLightPlugin;
 
 impl Plugin for CloudLightPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<CloudLight>().add_systems(PostUpdate, dim);
+        app.register_type::<CloudLight>()
+            .add_systems(PostUpdate, dim)
+            .add_observer(restore);
     }
 }
 
@@ -155,6 +163,42 @@ type Dimmed = (
     Option<&'static mut EnvironmentMapLight>,
     Option<&'static mut Skybox>,
 );
+
+/// Gives the light back that clouds have taken.
+fn restore(
+    removed: On<Remove, CloudLight>,
+    mut lights: Query<(
+        &mut CloudLightState,
+        Option<&mut DirectionalLight>,
+        Option<&mut EnvironmentMapLight>,
+        Option<&mut Skybox>,
+    )>,
+) {
+    let Ok((mut state, sun, environment, sky)) = lights.get_mut(removed.entity) else {
+        return;
+    };
+    let held = std::mem::take(&mut *state);
+    if let Some(mut sun) = sun {
+        let linear = sun.color.to_linear();
+        let colour = Vec3::new(linear.red, linear.green, linear.blue);
+        if let Some(own) = held.illuminance.restored(sun.illuminance) {
+            sun.illuminance = own;
+        }
+        if let Some(own) = held.colour.restored(colour) {
+            sun.color = Color::linear_rgb(own.x, own.y, own.z);
+        }
+    }
+    if let Some(mut environment) = environment
+        && let Some(own) = held.environment.restored(environment.intensity)
+    {
+        environment.intensity = own;
+    }
+    if let Some(mut sky) = sky
+        && let Some(own) = held.sky.restored(sky.brightness)
+    {
+        sky.brightness = own;
+    }
+}
 
 fn dim(
     clock: Res<RainClock>,
@@ -191,7 +235,8 @@ fn dim(
                 sun.illuminance = lux;
             }
             let linear = sun.color.to_linear();
-            let tint = Vec3::ONE.lerp(settings.tint.to_vec3(), 1.0 - kept);
+            let LinearRgba { red, green, blue, .. } = settings.tint;
+            let tint = Vec3::ONE.lerp(Vec3::new(red, green, blue), 1.0 - kept);
             let colour = Vec3::new(linear.red, linear.green, linear.blue);
             if let Some(colour) = state.colour.write(colour, |own| own * tint) {
                 sun.color = Color::linear_rgb(colour.x, colour.y, colour.z);

@@ -21,7 +21,7 @@ pub struct AreaFog(pub ArtistFog);
 
 /// Fogs laid over one another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FogMix {
+pub(crate) struct FogMix {
     pub fog: HazeFog,
     pub transition_s: f64,
 }
@@ -63,7 +63,7 @@ impl FogMix {
 
 /// The fogs of all areas.
 #[derive(SystemParam)]
-pub(super) struct AreaFogs<'w, 's> {
+pub(crate) struct AreaFogs<'w, 's> {
     fogs: Query<'w, 's, Ref<'static, AreaFog>>,
     local: Local<'s, AreaField>,
 }

@@ -179,7 +179,7 @@ fn glow(towards: vec3<f32>, ends: vec2<f32>, in: HazeVertex) -> vec3<f32> {
     return sum;
 }
 
-// Light of the rainbow at an angle from the point opposite the sun, of that on the drops, 1/sr. Error: 1e-4 of the greatest.
+// Light of the rainbow at an angle from the point opposite the sun, of that on the drops, 1/sr. Error: 2e-4 per sr.
 fn rainbow(angle: f32) -> vec3<f32> {
     let place = rain_bow_place(angle);
     let index = min(u32(place), RAIN_BOW_KNOTS - 2u);

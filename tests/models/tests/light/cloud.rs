@@ -8,7 +8,7 @@ use super::NOT_NUMBERS;
 #[test]
 fn clouds_are_their_formulas() {
     for (rate, column) in [(0.0, 3000.0), (1.0, 1000.0), (25.0, 3000.0), (100.0, 5000.0)] {
-        let water = 0.18 * (1.0 + (column * 1e-3 * rate).sqrt());
+        let water = 0.18 * (1.0 + f64::sqrt(column * 1e-3 * rate));
         assert!((cloud_water_kg_m2(rate, column) / water - 1.0).abs() <= 1e-15);
         let depth = cloud_optical_depth(water, 1e-5);
         assert!((depth / (1.5 * water / (1000.0 * 1e-5)) - 1.0).abs() <= 1e-15);
