@@ -100,7 +100,7 @@ pub mod prelude {
     pub use crate::cover::CoverSettings;
     pub use crate::haze::{ArtistFog, HazeMask, HazePlugin, HazeSettings};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
-    pub use crate::rainfall::{CardSettings, RainView};
+    pub use crate::rainfall::{CardSettings, RainView, SeenThrough};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::splash::{SplashMask, SplashSettings};

@@ -35,6 +35,7 @@ pub const LIBRARIES: &[Library] = library![
     "drop_light",
     "lamp_light",
     "surroundings",
+    "glass",
     "haze",
     "wetness",
     "standing_water",
