@@ -108,7 +108,7 @@ pub mod prelude {
     pub use crate::haze::{AreaFog, ArtistFog, HazeMask, HazePlugin, HazeSettings, HazeSky, Mist};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
     pub use crate::rainbow::{Rainbow, RainbowPlugin};
-    pub use crate::rainfall::{CardSettings, RainView};
+    pub use crate::rainfall::{CardSettings, RainView, SeenThrough};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::splash::{SplashMask, SplashSettings};

@@ -123,7 +123,7 @@ pub struct PassRecord {
     pub skipped: BTreeMap<SkipReason, u64>,
 }
 
-/// Frames whose counts of drops and cards are kept.
+/// Frames whose counts of drops, cards and splashes are kept.
 pub const KEPT_FRAMES: usize = 16_384;
 
 /// What the rain passes did: shared by the main and the render world.
@@ -141,6 +141,9 @@ pub struct Report {
     pub drops: VecDeque<u32>,
     /// Cards handed to the GPU in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
     pub cards: VecDeque<u32>,
+    /// Crowns and thrown drops that the GPU drew in the latest frames that drew splashes, at most [`KEPT_FRAMES`] of them. A
+    /// frame's count comes back a frame or two later.
+    pub splashes: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
     pub gpu_memory_bytes: usize,
 }
@@ -175,6 +178,11 @@ impl RainReport {
     /// Notes how many cards a frame drew.
     pub fn cards(&self, count: u32) {
         keep(&mut self.lock().cards, count);
+    }
+
+    /// Notes how many crowns and thrown drops a frame drew.
+    pub fn splashes(&self, count: u32) {
+        keep(&mut self.lock().splashes, count);
     }
 
     /// Notes the GPU memory in use.

@@ -36,6 +36,7 @@ pub const LIBRARIES: &[Library] = library![
     "drop_light",
     "lamp_light",
     "surroundings",
+    "glass",
     "haze",
     "rainbow",
     "wetness",

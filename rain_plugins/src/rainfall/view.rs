@@ -16,6 +16,7 @@ use rain_render::rainfall::Shutter;
 use super::cards::{CardViewFrame, LatticeState, fill_cards};
 use super::lamps::{ViewLamps, choose_lamps};
 use super::motion::ViewMotion;
+use super::panes::{SeenThrough, ViewPanes, choose_panes, mark_blended};
 use super::settings::CardSettings;
 use crate::cover::AirAroundView;
 use crate::report::{PassName, RainReport, SkipReason};
@@ -33,7 +34,7 @@ pub const MAX_CONTRAST: f32 = 32.0;
 /// one they end at a hard depth test.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default)]
-#[require(ViewMotion, RainViewFrame, CardViewFrame, ViewLamps)]
+#[require(ViewMotion, RainViewFrame, CardViewFrame, ViewLamps, ViewPanes)]
 pub struct RainView {
     /// Draws rain in this view.
     pub enabled: bool,
@@ -175,14 +176,18 @@ pub struct RainfallPlugin;
 impl Plugin for RainfallPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<RainView>()
+            .register_type::<SeenThrough>()
+            .add_message::<AssetEvent<StandardMaterial>>()
             .init_resource::<SoftwareAdapter>()
             .init_resource::<AirAroundView>()
             .init_resource::<CardSettings>()
             .init_resource::<LatticeState>()
             .add_systems(
                 PostUpdate,
-                (fill_containers, choose_lamps, fill_cards)
-                    .chain()
+                (
+                    (fill_containers, choose_lamps, fill_cards).chain(),
+                    (mark_blended, choose_panes).chain(),
+                )
                     .in_set(RainViewSystems::Views),
             );
     }

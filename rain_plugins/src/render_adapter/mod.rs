@@ -25,7 +25,8 @@ use bevy::asset::RenderAssetUsages;
 use bevy::camera::{Exposure, Hdr, RenderTarget, SubCameraView};
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
-pub(crate) use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::core_pipeline::oit::resolve::node::oit_resolve;
+pub(crate) use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass};
 use bevy::core_pipeline::schedule::{Core3d, camera_driver};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
@@ -354,7 +355,7 @@ impl Plugin for RainRenderPlugin {
                     )
                         .chain()
                         .in_set(RenderSystems::PrepareBindGroups),
-                    wave_levels::show_levels.in_set(RenderSystems::Cleanup),
+                    (wave_levels::show_levels, splash::count_splashes).in_set(RenderSystems::Cleanup),
                 ),
             )
             .add_systems(
@@ -382,10 +383,22 @@ impl Plugin for RainRenderPlugin {
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transmissive_pass_3d)
                         .before(main_transparent_pass_3d),
+                    (
+                        splash::splash_behind_glass,
+                        lattice::lattice_behind_glass,
+                        record::rainfall_behind_glass,
+                    )
+                        .chain()
+                        .in_set(Core3dSystems::MainPass)
+                        .after(haze::haze_behind_glass)
+                        .after(main_transmissive_pass_3d)
+                        .before(main_transparent_pass_3d),
                     (haze::haze_over_sky, splash::splash, lattice::lattice, record::rainfall)
                         .chain()
                         .in_set(Core3dSystems::MainPass)
-                        .after(main_transparent_pass_3d),
+                        .after(main_transparent_pass_3d)
+                        // Transparent fragments that are sorted by pixel reach the picture here.
+                        .after(oit_resolve),
                     lens::lens
                         .after(Core3dSystems::MainPass)
                         .before(Core3dSystems::EarlyPostProcess),

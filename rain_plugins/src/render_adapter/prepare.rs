@@ -407,7 +407,7 @@ pub(super) fn prepare_rain(
                 &queue,
                 clip_from_eye.inverse(),
                 near,
-                size,
+                view.viewport.as_vec4(),
                 surface_params(eye),
                 depth,
                 &cover.texture_view,
@@ -417,8 +417,14 @@ pub(super) fn prepare_rain(
             gpu.mask_bind_groups.insert(entity, bind_group);
         }
         let Some(shutter) = rain.shutter else { continue };
-        gpu.rainfall
-            .prepare_pipelines(device, view.target_format, msaa.samples(), rain.masks.is_some());
+        let panes = rain.panes.seen_from(eye);
+        gpu.rainfall.prepare_pipelines(
+            device,
+            view.target_format,
+            msaa.samples(),
+            rain.masks.is_some(),
+            !panes.is_empty(),
+        );
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
         let lamps = rain.lamps.seen_from(eye, camera.exposure);
@@ -437,6 +443,7 @@ pub(super) fn prepare_rain(
             },
             lighting: view_lighting(&scene, environment, camera.exposure),
             lamps: &lamps,
+            panes: &panes,
             cover: cover_at(eye.as_dvec3()),
         };
         let textures = RainfallTextures {

@@ -106,7 +106,7 @@ pub struct Counts {
     pub drops: Tally,
     /// Billboards of many drops.
     pub billboards: Tally,
-    /// Splashes.
+    /// Crowns and thrown drops of splashes, counted by the GPU that draws them.
     pub splashes: Tally,
     /// Drips from eaves and leaves.
     pub drips: Tally,

@@ -173,11 +173,12 @@ pub fn run(
     progress(Progress::Writing);
     let passes = pass_rows(&session);
     let drawn = session.passes();
-    let [drops, cards] =
-        [&drawn.drops, &drawn.cards].map(|counts| counts.iter().map(|n| u64::from(*n)).collect::<Vec<_>>());
+    let [drops, cards, splashes] = [&drawn.drops, &drawn.cards, &drawn.splashes]
+        .map(|counts| counts.iter().map(|n| u64::from(*n)).collect::<Vec<_>>());
     let counts = Counts {
         drops: Tally::of(&drops),
         billboards: Tally::of(&cards),
+        splashes: Tally::of(&splashes),
         ..Counts::default()
     };
     let (budget, _) = record.budget(&mut session);

@@ -13,11 +13,11 @@ use super::water::{WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::AirAroundView;
 use crate::haze::{HazeSky, HazeViewFrame};
 use crate::rainfall::RainView;
-use crate::render_adapter::{WetMaterial, mirror_camera, reflection_image, reflection_target};
+use crate::render_adapter::{DeferredPrepass, WetMaterial, mirror_camera, reflection_image, reflection_target};
 use crate::report::{PassName, RainReport, SkipReason};
 
-/// Put on a camera with [`RainView`] and a perspective projection: wet ground mirrors the scene itself, not only the
-/// environment map. Costs a second, smaller view of the scene in frames in which the ground is wet. At most
+/// Put on a camera with [`RainView`], a perspective projection and forward materials: wet ground mirrors the scene itself,
+/// not only the environment map. Costs a second, smaller view of the scene in frames in which the ground is wet. At most
 /// [`MAX_MIRRORS`] active views have it, by the order of their cameras.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default)]
@@ -114,6 +114,8 @@ pub(super) struct Mirrored {
     sky: Option<&'static Skybox>,
     fog: Option<&'static DistanceFog>,
     layers: Option<&'static RenderLayers>,
+    /// Deferred materials know no mirror.
+    deferred: Has<DeferredPrepass>,
 }
 
 /// Water farther away than this does not choose the mirror's height. Units: m.
@@ -166,6 +168,9 @@ fn aim(
     let Projection::Perspective(own) = view.projection else {
         return Err(SkipReason::Unsupported);
     };
+    if view.deferred {
+        return Err(SkipReason::Unsupported);
+    }
     let eye = view.transform.translation();
     let height = view
         .reflection

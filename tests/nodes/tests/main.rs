@@ -7,6 +7,7 @@ mod device;
 mod far;
 mod field_parity;
 mod film_waves;
+mod glass;
 mod hash_parity;
 mod haze;
 mod lattice;
