@@ -19,11 +19,13 @@ pub mod clock;
 pub mod cover;
 pub mod error;
 pub mod history;
+pub mod lightning;
 pub mod queries;
 pub mod rainfall;
 pub mod schedule;
 pub mod seed;
 pub mod snapshot;
+pub mod sound;
 pub mod splash;
 pub mod state_hash;
 pub mod surface;
@@ -35,12 +37,14 @@ pub use clock::{RainClock, RainClockPlugin};
 pub use cover::{CoverField, CoverFieldPlugin};
 pub use error::RainConfigError;
 pub use history::{RainHistory, RainHistoryPlugin};
+pub use lightning::LightningEventsPlugin;
 pub use queries::RainQueries;
 pub use rainfall::areas::{RainArea, RainAreas, RainAreasPlugin};
 pub use rainfall::{RainfallField, RainfallFieldPlugin};
 pub use schedule::{RainSystems, RainTick};
 pub use seed::RainSeed;
 pub use snapshot::RainSnapshot;
+pub use sound::RainSoundPlugin;
 pub use splash::FootSplashPlugin;
 pub use state_hash::state_hash;
 pub use surface::SurfaceGroundPlugin;
@@ -53,12 +57,16 @@ pub mod prelude {
     pub use crate::cover::{CoverField, CoverFieldPlugin};
     pub use crate::error::RainConfigError;
     pub use crate::history::{HistorySample, RainHistory, RainHistoryPlugin};
+    pub use crate::lightning::{
+        ActiveFlash, ActiveLightning, Lightning, LightningEventsPlugin, LightningFlash, RainListener, ThunderHeard,
+    };
     pub use crate::queries::{RainQueries, SoundWetness, SurfaceSound};
     pub use crate::rainfall::areas::{RainArea, RainAreaRefused, RainAreas, RainAreasPlugin, RainOutside};
     pub use crate::rainfall::{RainfallField, RainfallFieldPlugin};
     pub use crate::schedule::{RainSystems, RainTick};
     pub use crate::seed::RainSeed;
     pub use crate::snapshot::{RainSnapshot, SnapshotAppExt, SnapshotError};
+    pub use crate::sound::{RainSound, RainSoundPlugin};
     pub use crate::splash::{Foot, FootSplash, FootSplashPlugin, FootSplashSettings, FootStep, PaintedStep};
     pub use crate::state_hash::{HashState, StateHashAppExt, StateHasher, state_hash};
     pub use crate::surface::{
@@ -66,13 +74,14 @@ pub mod prelude {
         SurfaceSettings, surface_class_of_name,
     };
     pub use crate::weather::{
-        ActiveWeather, ArtistControls, LevelCurve, LevelKey, LevelTimeline, RainTypeTable, WaterByHand, Weather,
-        WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState, WeatherTimeline,
+        ActiveWeather, ArtistControls, GustState, Gusts, LevelCurve, LevelKey, LevelTimeline, RainTypeTable,
+        WaterByHand, Weather, WeatherIgnored, WeatherMode, WeatherPlugin, WeatherState, WeatherTimeline,
     };
+    pub use rain_core::lightning::LightningSettings;
     pub use rain_core::rainfall::Distribution;
     pub use rain_core::rainfall::areas::{AreaFade, AreaKey, AreaMotion, AreaRain, AreaSettings, AreaShape};
     pub use rain_core::weather::{
-        ArtistSettings, RainType, RainTypes, SurfaceClass, Timeline, WeatherConditions, WeatherPreset,
+        ArtistSettings, GustSettings, RainType, RainTypes, SurfaceClass, Timeline, WeatherConditions, WeatherPreset,
     };
 }
 
@@ -98,6 +107,8 @@ impl Plugin for RainEcsPlugin {
             CoverFieldPlugin,
             SurfaceGroundPlugin,
             FootSplashPlugin,
+            LightningEventsPlugin,
+            RainSoundPlugin,
         ));
     }
 }

@@ -39,13 +39,17 @@ pub enum RainSystems {
     Haze,
     /// Water on cameras and windscreens.
     Lens,
+    /// Flashes, and thunder that arrives.
+    Lightning,
+    /// What is heard.
+    Sound,
     /// Ledgers and reports.
     Report,
 }
 
 impl RainSystems {
     /// All sets in running order.
-    pub const ORDER: [Self; 13] = [
+    pub const ORDER: [Self; 15] = [
         Self::Input,
         Self::Weather,
         Self::Areas,
@@ -58,6 +62,8 @@ impl RainSystems {
         Self::Splash,
         Self::Haze,
         Self::Lens,
+        Self::Lightning,
+        Self::Sound,
         Self::Report,
     ];
 }

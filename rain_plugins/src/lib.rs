@@ -28,6 +28,7 @@
 //! | [`rainbow::RainbowPlugin`] | rainbows in the haze of cameras that ask for them |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
+//! | [`lightning::LightningPlugin`] | flashes of storms that ask for them, and their light |
 //! | [`lens::LensPlugin`] | drops on the glass of cameras that ask for it |
 //! | [`surface::WetSurfacePlugin`] | wet materials, puddles, the mirrored view |
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
@@ -37,6 +38,7 @@ pub mod cloud_light;
 pub mod cover;
 pub mod haze;
 pub mod lens;
+pub mod lightning;
 pub mod rainbow;
 pub mod rainfall;
 pub mod render_adapter;
@@ -74,6 +76,7 @@ impl PluginGroup for RainPlugins {
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
             .add(lens::LensPlugin)
+            .add(lightning::LightningPlugin)
     }
 }
 
@@ -107,6 +110,7 @@ pub mod prelude {
     pub use crate::cover::CoverSettings;
     pub use crate::haze::{AreaFog, ArtistFog, HazeMask, HazePlugin, HazeSettings, HazeSky, Mist};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
+    pub use crate::lightning::{LightningLight, LightningLook};
     pub use crate::rainbow::{Rainbow, RainbowPlugin};
     pub use crate::rainfall::{CardSettings, RainView, SeenThrough};
     pub use crate::render_adapter::RainRenderStatus;
@@ -119,8 +123,8 @@ pub mod prelude {
     };
     pub use crate::waves::{RingLayerSettings, RingSource, WaterContact, WaterDisturber, WaveWaterSettings};
     pub use crate::{
-        RainPlugins, cover::CoverPlugin, lens::LensPlugin, rainfall::RainfallPlugin, splash::SplashPlugin,
-        surface::WetSurfacePlugin, waves::WavesPlugin,
+        RainPlugins, cover::CoverPlugin, lens::LensPlugin, lightning::LightningPlugin, rainfall::RainfallPlugin,
+        splash::SplashPlugin, surface::WetSurfacePlugin, waves::WavesPlugin,
     };
     pub use rain_core::lens::{WiperArm, WiperMode};
     pub use rain_core::surface::SurfaceState;

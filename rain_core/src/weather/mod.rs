@@ -6,6 +6,7 @@
 //! | `preset.rs` | named conditions and the intensity classes |
 //! | `timeline.rs` | conditions as a piecewise linear function of time, with exact means |
 //! | `hyetograph.rs` | a timeline read from a CSV table |
+//! | `gusts.rs` | how the wind swings about its mean |
 //! | `evaporation.rs` | Dalton's and Penman's evaporation, dew, drying time |
 //! | `surface_class.rs` | what asphalt, stone, grass … do with water |
 //! | `store.rs` | an account of water that loses nothing to rounding |
@@ -25,6 +26,7 @@ mod conditions;
 mod evaporation;
 mod film_course;
 mod film_flow;
+mod gusts;
 pub(crate) mod horton;
 mod hyetograph;
 mod preset;
@@ -41,6 +43,7 @@ pub use conditions::WeatherConditions;
 pub use evaporation::{
     dalton_evaporation_mm_h, dew_point_c, drying_time_s, penman_evaporation_mm_h, saturation_vapour_pressure_pa,
 };
+pub use gusts::{GustModel, GustSettings, kaimal_share};
 pub use horton::Infiltration;
 pub use hyetograph::{HyetographError, HyetographProblem, MAX_HYETOGRAPH_ROWS, read_hyetograph};
 pub use preset::{IntensityClass, UnknownPreset, WeatherPreset};

@@ -112,7 +112,8 @@ impl CoverField {
     /// Takes over how it rains and draws what changed.
     fn tick(&mut self, field: &RainfallField) {
         if field.is_raining() {
-            let wind = DVec2::new(field.wind_m_s().x, field.wind_m_s().z);
+            let wind = field.mean_wind_m_s();
+            let wind = DVec2::new(wind.x, wind.z);
             // Both in the domain of the weather; only together they may be too slanted: then the last slope stays.
             if let Ok(slope) = FallSlope::new(wind, field.mean_inverse_velocity_s_m())
                 && slope.angle_to(self.scene.slope()) > TOLERANCE_RAD

@@ -7,14 +7,14 @@ use bevy_ecs::prelude::*;
 use bevy_math::DVec3;
 use rain_core::rainfall::terminal_velocity::air_density_kg_m3;
 use rain_core::rainfall::{Distribution, FieldMotion, Spectrum};
-use rain_core::weather::WeatherConditions;
+use rain_core::weather::{GustModel, WeatherConditions};
 use serde::{Deserialize, Serialize};
 
 use crate::clock::RainClock;
 use crate::schedule::{RainSystems, RainTick};
 use crate::snapshot::{RainfallPart, SnapshotAppExt};
 use crate::state_hash::{HashState, StateHashAppExt, StateHasher};
-use crate::weather::{ActiveWeather, WeatherState};
+use crate::weather::{ActiveWeather, GustState, WeatherState};
 use areas::RainAreas;
 
 /// What falls, everywhere: areas change only the intensity. Its spectrum is that of the heaviest rain anywhere, which
@@ -27,6 +27,8 @@ pub struct RainfallField {
     distribution: Distribution,
     mean_inverse_velocity_s_m: f64,
     wind_m_s: DVec3,
+    #[serde(default)]
+    mean_wind_m_s: Option<DVec3>,
 }
 
 impl Default for RainfallField {
@@ -43,6 +45,7 @@ impl Default for RainfallField {
             distribution,
             mean_inverse_velocity_s_m: spectrum.mean_inverse_velocity(),
             wind_m_s: DVec3::ZERO,
+            mean_wind_m_s: None,
         }
     }
 }
@@ -80,10 +83,16 @@ impl RainfallField {
         &self.spectrum
     }
 
-    /// Where the air goes. Units: m/s.
+    /// Where the air goes, gusts included: the mean of the last tick. Units: m/s.
     #[must_use]
     pub fn wind_m_s(&self) -> DVec3 {
         self.wind_m_s
+    }
+
+    /// The same without gusts: what maps of cover are drawn for, which cannot follow each gust. Units: m/s.
+    #[must_use]
+    pub fn mean_wind_m_s(&self) -> DVec3 {
+        self.mean_wind_m_s.unwrap_or(self.wind_m_s)
     }
 
     /// Flux mean of 1/v. Units: s/m.
@@ -109,8 +118,9 @@ impl RainfallField {
         let finite = |v: &DVec3, most: f64| v.is_finite() && v.abs().max_element() <= most;
         let s = &self.spectrum;
         self.motion.offset_m.iter().all(|v| finite(v, 1e12))
-            && self.motion.velocity_m_s.iter().all(|v| finite(v, 200.0))
-            && finite(&self.wind_m_s, 80.0)
+            && self.motion.velocity_m_s.iter().all(|v| finite(v, 400.0))
+            && finite(&self.wind_m_s, 400.0)
+            && self.mean_wind_m_s.is_none_or(|wind| finite(&wind, 80.0))
             && (0.0..=500.0).contains(&s.intensity_mm_h)
             && (0.0..1e9).contains(&s.n0_per_m3_mm)
             && (0.1..1e3).contains(&s.slope_per_mm)
@@ -118,7 +128,7 @@ impl RainfallField {
     }
 
     /// Takes over the weather of this tick and moves on by its length.
-    fn tick(&mut self, conditions: &WeatherConditions, highest_mm_h: f64, seconds: f64) {
+    fn tick(&mut self, conditions: &WeatherConditions, gusts: Option<&GustModel>, highest_mm_h: f64, at: Tick) {
         if highest_mm_h != self.spectrum.intensity_mm_h || conditions.distribution != self.distribution {
             // The conditions have been validated before they became state.
             if let Ok(spectrum) = Spectrum::new(conditions.distribution, highest_mm_h) {
@@ -134,8 +144,37 @@ impl RainfallField {
         // Dry: vapour thins the air by at most 1 % and speeds drops by at most 0.5 %.
         let density = air_density_kg_m3(conditions.pressure_pa, conditions.air_temperature_c, 0.0);
         self.motion.set_velocity(self.wind_m_s, density);
-        self.motion.advance(seconds);
+        self.mean_wind_m_s = gusts.map(|_| conditions.wind_m_s);
+        let Some(gusts) = gusts else {
+            self.motion.advance(at.seconds);
+            return;
+        };
+        let wind = conditions.wind_m_s;
+        let steady = self.motion.velocity_m_s;
+        let blow = |motion: &mut FieldMotion, from_s: f64, to_s: f64| {
+            for (velocity, steady) in motion.velocity_m_s.iter_mut().zip(&steady) {
+                let share = gusts.mean(from_s, to_s, -steady.y + wind.y);
+                *velocity = *steady + GustModel::gusty(wind, share) - wind;
+            }
+        };
+        let now_s = at.end_s;
+        blow(&mut self.motion, now_s - at.seconds, now_s);
+        self.motion.advance(at.seconds);
+        self.wind_m_s = GustModel::gusty(wind, gusts.mean(now_s - at.seconds, now_s, 0.0));
+        // Frames go on with the coming tick's mean: they meet it where it ends.
+        blow(&mut self.motion, now_s, now_s + at.coming_s);
     }
+}
+
+/// When a tick is.
+#[derive(Debug, Clone, Copy)]
+struct Tick {
+    /// Its end. Units: s.
+    end_s: f64,
+    /// Its length. Units: s.
+    seconds: f64,
+    /// That of the next. Units: s.
+    coming_s: f64,
 }
 
 impl HashState for RainfallField {
@@ -174,9 +213,16 @@ fn advance_field(
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
     areas: Option<Res<RainAreas>>,
+    gusts: Option<Res<GustState>>,
 ) {
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
     let conditions = state.map_or_else(WeatherConditions::default, |s| *s.conditions());
     let highest_mm_h = areas.map_or(conditions.intensity_mm_h, |areas| areas.highest_mm_h());
-    field.tick(&conditions, highest_mm_h, clock.current_tick_s());
+    let at = Tick {
+        end_s: clock.now_s(),
+        seconds: clock.current_tick_s(),
+        coming_s: clock.tick_ns() as f64 * 1e-9,
+    };
+    let gusts = gusts.as_ref().and_then(|gusts| gusts.model());
+    field.tick(&conditions, gusts, highest_mm_h, at);
 }

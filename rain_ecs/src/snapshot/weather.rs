@@ -1,13 +1,15 @@
 //! The weather in a snapshot.
 
 use bevy_ecs::prelude::*;
-use rain_core::weather::{ArtistSettings, Timeline, WeatherConditions};
+use rain_core::lightning::LightningSettings;
+use rain_core::weather::{ArtistSettings, GustSettings, Timeline, WeatherConditions};
 use serde::{Deserialize, Serialize};
 
 use super::{Apply, SnapshotError, SnapshotPart};
+use crate::lightning::{ActiveLightning, Lightning};
 use crate::weather::{
-    ActiveWeather, ArtistControls, LevelCurve, LevelTimeline, WaterByHand, Weather, WeatherMode, WeatherState,
-    WeatherTimeline,
+    ActiveWeather, ArtistControls, GustState, Gusts, LevelCurve, LevelTimeline, WaterByHand, Weather, WeatherMode,
+    WeatherState, WeatherTimeline,
 };
 
 /// The weather in force: what the user set and what it has done. It is put on the entity whose weather counts, or on a
@@ -23,6 +25,10 @@ pub(crate) struct WeatherPart {
     by_hand: Option<WaterByHand>,
     #[serde(default)]
     levels: Option<(LevelCurve, f64, bool)>,
+    #[serde(default)]
+    gusts: Option<GustSettings>,
+    #[serde(default)]
+    lightning: Option<LightningSettings>,
     state: WeatherState,
 }
 
@@ -43,6 +49,14 @@ impl SnapshotPart for WeatherPart {
             levels: world
                 .get::<LevelTimeline>(entity)
                 .map(|t| (t.curve.clone(), t.start_s, t.playing)),
+            gusts: world.get::<Gusts>(entity).map(|gusts| {
+                let last = world.get_resource::<GustState>().map(|state| state.settings);
+                gusts.0.validated().unwrap_or(last.unwrap_or_default())
+            }),
+            lightning: world.get::<Lightning>(entity).map(|lightning| {
+                let last = world.get_resource::<ActiveLightning>().map(ActiveLightning::settings);
+                lightning.0.validated().unwrap_or(last.unwrap_or_default())
+            }),
             state,
         })
     }
@@ -78,6 +92,14 @@ impl SnapshotPart for WeatherPart {
             Some(settings) => Some(settings.validated().map_err(|error| refused(error.to_string()))?),
             None => None,
         };
+        let gusts = match self.gusts {
+            Some(settings) => Some(settings.validated().map_err(|error| refused(error.to_string()))?),
+            None => None,
+        };
+        let lightning = match self.lightning {
+            Some(settings) => Some(settings.validated().map_err(|error| refused(error.to_string()))?),
+            None => None,
+        };
         let start_s = self.timeline.as_ref().map_or(0.0, |(_, start_s)| *start_s);
         if !start_s.is_finite() {
             return Err(refused(format!("start_s is {start_s}")));
@@ -103,6 +125,14 @@ impl SnapshotPart for WeatherPart {
             match levels {
                 Some(levels) => entity.insert(levels),
                 None => entity.remove::<LevelTimeline>(),
+            };
+            match gusts {
+                Some(gusts) => entity.insert(Gusts(gusts)),
+                None => entity.remove::<Gusts>(),
+            };
+            match lightning {
+                Some(lightning) => entity.insert(Lightning(lightning)),
+                None => entity.remove::<Lightning>(),
             };
             match timeline {
                 Some(timeline) => entity.insert(timeline),

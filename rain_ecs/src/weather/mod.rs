@@ -3,6 +3,7 @@
 //! | file | concept |
 //! |---|---|
 //! | `components.rs` | [`Weather`], [`WeatherTimeline`], [`WeatherMode`], [`ArtistControls`], [`WaterByHand`] |
+//! | `gusts.rs` | [`Gusts`], which have the wind swing |
 //! | `levels.rs` | [`LevelTimeline`], which plays levels set by hand |
 //! | `state.rs` | [`WeatherState`], the output |
 //! | `systems.rs` | choosing, checking and advancing in [`crate::RainTick`] |
@@ -11,6 +12,7 @@
 //! reported once by a [`WeatherIgnored`] message.
 
 mod components;
+mod gusts;
 mod levels;
 mod state;
 mod systems;
@@ -19,6 +21,7 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
 pub use components::{ArtistControls, RainTypeTable, WaterByHand, Weather, WeatherMode, WeatherTimeline};
+pub use gusts::{GustState, Gusts};
 pub use levels::{LevelCurve, LevelKey, LevelTimeline};
 pub use state::WeatherState;
 pub use systems::{ActiveWeather, WeatherIgnored};
@@ -34,6 +37,7 @@ pub struct WeatherPlugin;
 impl Plugin for WeatherPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ActiveWeather>()
+            .init_resource::<GustState>()
             .add_message::<crate::RainConfigError>()
             .add_message::<WeatherIgnored>()
             .register_type::<Weather>()
@@ -41,6 +45,7 @@ impl Plugin for WeatherPlugin {
             .register_type::<WeatherMode>()
             .register_type::<ArtistControls>()
             .register_type::<WaterByHand>()
+            .register_type::<Gusts>()
             .register_type::<LevelTimeline>()
             .register_type::<RainTypeTable>()
             .register_type::<WeatherState>()
@@ -59,6 +64,7 @@ impl Plugin for WeatherPlugin {
                         systems::follow_rain_types,
                         levels::play_levels,
                         systems::check_weather,
+                        gusts::follow_gusts.run_if(gusts::gusts_are_used),
                     )
                         .chain()
                         .in_set(RainSystems::Input),

@@ -330,7 +330,7 @@ fn aim_view(
         return;
     }
     let eye = view.unwrap_or_default();
-    let wind = field.wind_m_s();
+    let wind = field.mean_wind_m_s();
     let Ok(slope) = FallSlope::new(DVec2::new(wind.x, wind.z), field.mean_inverse_velocity_s_m()) else {
         report.skipped(PassName::Cover, SkipReason::Disabled);
         return;

@@ -183,7 +183,7 @@ fn water_look(appearance: &WaterAppearance, surface: &SurfaceState, maps: bool) 
     let velocity = wave_velocity(appearance, wind);
     let variance = match appearance.wave_slope {
         Some(slope) => slope * slope,
-        None => wind_slope_variance(f64::from(wind.length())) as f32,
+        None => wind_slope_variance(f64::from(surface.gusty_m_s)) as f32,
     };
     let square = appearance.wave_strength * appearance.wave_strength;
     WaterLook {

@@ -7,6 +7,7 @@
 //! | `record.rs` | commands, once a view |
 //! | `haze.rs` | all three for haze |
 //! | `lattice.rs` | all three for cards and their streak textures |
+//! | `lightning.rs` | the material of lightning |
 //! | `splash.rs` | all three for splashes |
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
@@ -15,6 +16,7 @@ mod extract;
 mod haze;
 mod lattice;
 mod lens;
+mod lightning;
 mod prepare;
 mod record;
 mod splash;
@@ -47,6 +49,7 @@ use rain_render::masks::KNOWN_FORMAT;
 use rain_render::reflection::REFLECTION_FORMAT;
 use rain_render::water_map::WaterMapSettings;
 
+pub(crate) use lightning::LightningMaterial;
 pub(crate) use wave_levels::WaveLevels;
 pub use wet_material::{WetMaterial, WetSurface, WetSurfaceHandles};
 
@@ -316,6 +319,7 @@ impl Plugin for RainRenderPlugin {
             ExtractComponentPlugin::<RainMirrorView>::default(),
             ExtractComponentPlugin::<RainMaskView>::default(),
             wet_material::WetMaterialPlugin,
+            lightning::LightningMaterialPlugin,
         ));
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;

@@ -587,6 +587,12 @@ pub(super) fn weather(app: &mut App, scenario: &Scenario) -> Result<(), RunError
     if let Some(curve) = levels {
         weather.insert(LevelTimeline::new(curve));
     }
+    if let Some(gusts) = scenario.weather.gusts {
+        weather.insert(Gusts(gusts));
+    }
+    if let Some(lightning) = scenario.weather.lightning {
+        weather.insert(Lightning(lightning));
+    }
     app.insert_resource(RainOutside(scenario.areas.outside));
     for area in &scenario.areas.list {
         app.world_mut()

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use rain_core::error::ConfigError;
-use rain_ecs::prelude::LevelCurve;
+use rain_ecs::prelude::{GustSettings, LevelCurve, LightningSettings};
 use thiserror::Error;
 
 use super::areas::MAX_AREAS;
@@ -213,6 +213,12 @@ impl Scenario {
         number("weather.wetness", weather.wetness.unwrap_or(0.0), 0.0, 1.0, "")?;
         number("weather.water_level", weather.water_level.unwrap_or(0.0), 0.0, 1.0, "")?;
         number("weather.hole_level", weather.hole_level.unwrap_or(0.0), 0.0, 1.0, "")?;
+        if let Some(Err(error)) = weather.gusts.map(GustSettings::validated) {
+            return config("weather.gusts", error);
+        }
+        if let Some(Err(error)) = weather.lightning.map(LightningSettings::validated) {
+            return config("weather.lightning", error);
+        }
         if let Some(levels) = &weather.levels {
             count("weather.levels.keys", levels.keys.len(), MAX_KEYS, "keys")?;
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 use rain_core::error::ConfigError;
 use rain_core::rainfall::Distribution;
 use rain_core::weather::{Keyframe, Timeline, Transition, WeatherConditions, WeatherPreset, read_hyetograph};
-use rain_ecs::prelude::{LevelCurve, LevelKey, WaterByHand};
+use rain_ecs::prelude::{GustSettings, LevelCurve, LevelKey, LightningSettings, WaterByHand};
 use serde::{Deserialize, Serialize};
 
 use super::error::ScenarioError;
@@ -40,6 +40,10 @@ pub struct Weather {
     pub hole_level: Option<f64>,
     /// Levels played back, in place of those set by hand. Default: none.
     pub levels: Option<Levels>,
+    /// Swings of the wind about its mean. Units, domains and defaults: those of [`GustSettings`]. Default: none.
+    pub gusts: Option<GustSettings>,
+    /// Lightning, seen and lit by. Units, domains and defaults: those of [`LightningSettings`]. Default: none.
+    pub lightning: Option<LightningSettings>,
 }
 
 /// Levels over time, straight between keys; they act in either mode.

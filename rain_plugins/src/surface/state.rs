@@ -29,6 +29,8 @@ pub struct SurfaceState {
     pub flow_m_s: f32,
     /// Where the air goes, horizontally (x, z). Units: m/s.
     pub wind_m_s: Vec2,
+    /// Its speed, gusts included. Units: m/s.
+    pub gusty_m_s: f32,
     /// Time of the waves: the rain clock's, from 0 to [`WAVE_PERIOD_S`]. Units: s.
     pub time_s: f32,
     /// The same since the start. Units: s.
@@ -55,6 +57,7 @@ pub(super) fn create_state(mut commands: Commands, handles: Option<Res<WetSurfac
             by_hand: WaterByHand::default(),
             flow_m_s: 0.0,
             wind_m_s: Vec2::ZERO,
+            gusty_m_s: 0.0,
             time_s: 0.0,
             seconds: 0.0,
             ground_m: None,
@@ -78,6 +81,7 @@ pub(super) fn follow_weather(
     refined: Query<&SurfaceWetting>,
     levels: Res<WaterLevels>,
     areas: Option<Res<RainAreas>>,
+    field: Option<Res<RainfallField>>,
     ground: Option<Res<SurfaceGround>>,
     mut after_areas: Local<bool>,
 ) {
@@ -134,6 +138,9 @@ pub(super) fn follow_weather(
     surface.shown |= surface.placed;
     let wind = weather.conditions().wind_m_s;
     surface.wind_m_s = Vec2::new(wind.x as f32, wind.z as f32);
+    surface.gusty_m_s = field.map_or(surface.wind_m_s.length(), |field| {
+        field.wind_m_s().with_y(0.0).length() as f32
+    });
     let seconds = clock.now_s() + f64::from(clock.interpolation()) * clock.tick_ns() as f64 / 1e9;
     surface.time_s = (seconds % WAVE_PERIOD_S) as f32;
     surface.seconds = seconds;

@@ -15,6 +15,7 @@ mod groups;
 mod haze;
 mod large_scene;
 mod lens;
+mod lightning;
 mod looks;
 mod materials;
 mod mirrors;

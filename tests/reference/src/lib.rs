@@ -19,6 +19,7 @@ pub mod hash;
 pub mod height_field;
 pub mod lens;
 pub mod light;
+pub mod lightning;
 pub mod numerics;
 pub mod spectrum;
 pub mod splash;

@@ -88,3 +88,33 @@ fn a_rainbow_stands_over_the_plain_opposite_a_low_sun() {
         "dark outside: {rings:?}"
     );
 }
+
+fn sized(scenario: &Scenario, size: [u32; 2]) -> Scenario {
+    let mut scenario = scenario.clone();
+    scenario.outputs.size = size;
+    scenario
+}
+
+#[test]
+fn a_thunderstorm_lights_the_street_for_a_moment() {
+    if !gpu::available() {
+        return;
+    }
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenarios/thunderstorm.ron");
+    let scenario = Scenario::load(&file).expect("it is valid");
+    let mut session = Session::new(&sized(&scenario, [160, 90]), assets::street_folder().0).expect("it starts");
+    let light: Vec<f64> = scenario
+        .captures
+        .times_s()
+        .iter()
+        .map(|time_s| {
+            let capture = session.capture(*time_s).expect("a picture");
+            let sum: f64 = capture.frame.pixels().flat_map(|p| p.0).map(f64::from).sum();
+            sum / f64::from(3 * 160 * 90)
+        })
+        .collect();
+    // Before the flash, in its first stroke, between strokes, in the second.
+    assert!(light[1] > light[0] + 15.0, "{light:?}");
+    assert!(light[2] < light[1] - 10.0 && light[3] > light[2] + 5.0, "{light:?}");
+    assert!((light[2] - light[0]).abs() < 6.0, "dark between the strokes: {light:?}");
+}

@@ -13,8 +13,19 @@ pub const TABLE: &str = "docs/physics.md";
 const HEAD: &str = "| Quantity | Equation (units, domain) | Function | Test | Source | Known error |";
 
 /// Folders of `rain_core` whose public functions are models.
-pub const MODELS: [&str; 10] = [
-    "canopy", "cover", "haze", "lens", "optics", "rainfall", "splash", "surface", "waves", "wheels",
+pub const MODELS: [&str; 12] = [
+    "canopy",
+    "cover",
+    "haze",
+    "lens",
+    "lightning",
+    "optics",
+    "rainfall",
+    "sound",
+    "splash",
+    "surface",
+    "waves",
+    "wheels",
 ];
 
 /// One model.

@@ -1,0 +1,397 @@
+//! Light on the scene while a flash lasts.
+
+use std::f32::consts::PI;
+
+use bevy::camera::Exposure;
+use bevy::camera::visibility::NoFrustumCulling;
+use bevy::ecs::system::SystemParam;
+use bevy::light::{DirectionalLight, GlobalAmbientLight, NotShadowCaster, NotShadowReceiver, Skybox};
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use rain_core::haze::{EXTINCTION_EFFICIENCY, extinction_per_m};
+use rain_core::lightning::{FlashLight, LONGEST_FLASH_S};
+use rain_ecs::lightning::ActiveFlash;
+use rain_ecs::prelude::*;
+
+use super::settings::LightningLook;
+use super::shapes;
+use crate::rainfall::{RainView, leading_view};
+use crate::render_adapter::LightningMaterial;
+use crate::surface::{KeepDry, MovesInRain};
+
+/// Colour of a channel of some 25 000 K, of luminance 1. Linear.
+const COLOUR: Vec3 = Vec3::new(0.86, 0.98, 1.6);
+/// Shortest time that light is averaged over: an eye's and a camera's exposure. Units: s.
+const EXPOSURE_S: f32 = 1.0 / 60.0;
+/// Longest: of the frames that take longer, the last part. Units: s.
+const LONGEST_EXPOSURE_S: f32 = 0.1;
+/// Of the light that rain takes out of the direct way, what still arrives, from everywhere. By eye.
+const SCATTERED: f32 = 0.5;
+/// Luminance that clouds beside the glow get, as a share of the mean over the sky. By eye: at 0 a sky is cut out behind
+/// what the flash lights.
+const SKY_SHARE: f32 = 0.5;
+/// Luminous width of a channel. Units: m.
+const WIDTH_M: f32 = 0.05;
+/// Narrowest that a channel is drawn. Units: px. Its light is that of its true width.
+const LEAST_PX: f32 = 1.8;
+
+/// Marks the directional light that lightning owns. It is hidden while nothing flashes.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default)]
+#[reflect(Component, Default)]
+pub struct LightningLight;
+
+/// Things in the world that show a flash; kept for the next when it is over.
+#[derive(Debug)]
+struct Slot {
+    flash: Option<u64>,
+    /// Channel, branches, glow.
+    parts: [Entity; 3],
+    materials: [Handle<LightningMaterial>; 3],
+    /// As drawn. Units: m.
+    width_m: f32,
+}
+
+/// A value of the app's that a flash adds to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Added {
+    base: f32,
+    written: Option<f32>,
+}
+
+impl Added {
+    /// The app's own value: what it was, unless the app has written another since.
+    fn own(&mut self, now: f32) -> f32 {
+        if self.written != Some(now) {
+            self.base = now;
+        }
+        self.base
+    }
+
+    /// What to write: the own value and `more`.
+    fn with(&mut self, now: f32, more: f32) -> f32 {
+        let sum = self.own(now) + more;
+        self.written = (more > 0.0).then_some(sum);
+        sum
+    }
+}
+
+/// What is in the world for flashes.
+#[derive(Resource, Default, Debug)]
+pub(super) struct Shown {
+    light: Option<Entity>,
+    glow_mesh: Option<Handle<Mesh>>,
+    slots: Vec<Slot>,
+    ambient: Added,
+    skies: Vec<(Entity, Added)>,
+    /// The last frame showed something.
+    lit: bool,
+    good: LightningLook,
+}
+
+/// Whether a flash may be on, or the last frame showed one.
+pub(super) fn something_flashes(clock: Res<RainClock>, sky: Res<ActiveLightning>, shown: Res<Shown>) -> bool {
+    let now_s = frame_time(&clock);
+    let on = |active: &ActiveFlash| active.flash.time_s <= now_s && active.flash.time_s + LONGEST_FLASH_S + 0.2 > now_s;
+    shown.lit || sky.flashes().iter().any(on)
+}
+
+/// Time that the frame shows. Units: s.
+fn frame_time(clock: &RainClock) -> f64 {
+    clock.now_s() + f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9
+}
+
+/// The view that flashes are shown to.
+#[derive(Clone, Copy)]
+struct Eye {
+    at: DVec3,
+    /// Width of a pixel at a distance of 1.
+    pixel: f32,
+}
+
+type Seeing = (
+    Entity,
+    &'static Camera,
+    &'static GlobalTransform,
+    &'static Projection,
+    Has<RainView>,
+);
+
+fn eye(views: &Query<Seeing, With<Camera3d>>) -> Option<Eye> {
+    let of = |marked: bool| {
+        let views = views.iter().filter(|(.., is_marked)| *is_marked == marked);
+        leading_view(views.map(|(entity, camera, at, projection, _)| (entity, camera, (camera, at, projection))))
+    };
+    let (camera, at, projection) = of(true).or_else(|| of(false))?;
+    let height = camera.physical_viewport_size().map_or(720, |size| size.y).max(1);
+    let half_tan = 1.0 / projection.get_clip_from_view().y_axis.y.abs().max(1e-3);
+    Some(Eye {
+        at: at.translation().as_dvec3(),
+        pixel: 2.0 * half_tan / height as f32,
+    })
+}
+
+/// What flashes light.
+#[derive(SystemParam)]
+pub(super) struct Lit<'w, 's> {
+    ambient: Option<ResMut<'w, GlobalAmbientLight>>,
+    skies: Query<'w, 's, (Entity, &'static mut Skybox)>,
+    lights: Query<
+        'w,
+        's,
+        (
+            &'static mut DirectionalLight,
+            &'static mut Transform,
+            &'static mut Visibility,
+        ),
+        With<LightningLight>,
+    >,
+    parts:
+        Query<'w, 's, (&'static mut Mesh3d, &'static mut Transform, &'static mut Visibility), Without<LightningLight>>,
+    meshes: Option<ResMut<'w, Assets<Mesh>>>,
+    materials: Option<ResMut<'w, Assets<LightningMaterial>>>,
+}
+
+pub(super) fn show_lightning(
+    mut commands: Commands,
+    time: Res<Time>,
+    clock: Res<RainClock>,
+    sky: Res<ActiveLightning>,
+    look: Res<LightningLook>,
+    field: Res<RainfallField>,
+    rain: RainQueries,
+    views: Query<Seeing, With<Camera3d>>,
+    mut shown: ResMut<Shown>,
+    mut lit: Lit,
+) {
+    let shown = &mut *shown;
+    if look.is_changed() {
+        match look.validated() {
+            Ok(good) => shown.good = good,
+            Err(error) => error!("lightning: {error}"),
+        }
+    }
+    let look = shown.good;
+    let now_s = frame_time(&clock);
+    let window_s = time.delta_secs().clamp(EXPOSURE_S, LONGEST_EXPOSURE_S);
+    let extinction = extinction_per_m(field.spectrum(), EXTINCTION_EFFICIENCY) as f32;
+    let (mut direct, mut towards, mut ambient) = (0.0, Vec3::ZERO, 0.0);
+    let mut on = Vec::new();
+    for active in sky.flashes() {
+        let Some(eye) = eye(&views).filter(|_| look.enabled && look.gain > 0.0) else {
+            break;
+        };
+        let [all, first] = active.flash.mean_current_a(now_s - f64::from(window_s), now_s);
+        if all <= 0.1 {
+            continue;
+        }
+        let currents = [all, first].map(|current| current as f32 * look.gain);
+        let light = FlashLight::at(&active.flash, &active.channel, eye.at);
+        let lux = currents[0] * light.direct_lux_a[0] as f32 + currents[1] * light.direct_lux_a[1] as f32;
+        // Half of what drops take out is bent so little that it still comes from the flash.
+        let way = light.distance_m * light.towards;
+        let passed = rain.seen_through(eye.at, eye.at + way).sqrt() as f32;
+        direct += lux * passed;
+        towards += lux * passed * light.towards.as_vec3();
+        ambient += SCATTERED * lux * (1.0 - passed);
+        let under = rain
+            .seen_through(eye.at, eye.at + active.flash.cloud_base_m * DVec3::Y)
+            .sqrt() as f32;
+        ambient += currents[0] * light.glow_lux_a as f32 * (SCATTERED + (1.0 - SCATTERED) * under);
+        on.push((active, light, currents, eye));
+    }
+    shown.lit = !on.is_empty();
+    light_scene(&mut commands, shown, &mut lit, direct, towards, ambient, look.shadows);
+    show_channels(&mut commands, shown, &mut lit, &on, extinction);
+}
+
+/// Directional light, ambient light and sky.
+fn light_scene(
+    commands: &mut Commands,
+    shown: &mut Shown,
+    lit: &mut Lit,
+    direct_lux: f32,
+    towards: Vec3,
+    ambient_lux: f32,
+    shadows: bool,
+) {
+    let mean = ambient_lux / PI;
+    if let Some(ambient) = &mut lit.ambient {
+        let next = shown.ambient.with(ambient.brightness, mean);
+        if next != ambient.brightness {
+            ambient.brightness = next;
+        }
+    }
+    let skies = &mut shown.skies;
+    for (entity, mut sky) in &mut lit.skies {
+        let index = match skies.iter().position(|(known, _)| *known == entity) {
+            Some(index) => index,
+            None if mean > 0.0 => {
+                skies.push((entity, Added::default()));
+                skies.len() - 1
+            }
+            None => continue,
+        };
+        let next = skies[index].1.with(sky.brightness, SKY_SHARE * mean);
+        if next != sky.brightness {
+            sky.brightness = next;
+        }
+    }
+    if mean <= 0.0 {
+        skies.clear();
+    }
+    let pose = Transform::default().looking_to(-towards.normalize_or(Vec3::Y), Vec3::X);
+    let light = DirectionalLight {
+        color: Color::linear_rgb(COLOUR.x, COLOUR.y, COLOUR.z),
+        illuminance: direct_lux,
+        shadow_maps_enabled: shadows,
+        ..default()
+    };
+    match shown.light.and_then(|entity| lit.lights.get_mut(entity).ok()) {
+        Some((mut own, mut transform, mut visible)) if direct_lux > 0.0 => {
+            (*own, *transform, *visible) = (light, pose, Visibility::Visible);
+        }
+        Some((.., mut visible)) => {
+            visible.set_if_neq(Visibility::Hidden);
+        }
+        None if direct_lux > 0.0 => {
+            let name = Name::new("lightning");
+            shown.light = Some(
+                commands
+                    .spawn((name, LightningLight, light, pose, Visibility::Visible))
+                    .id(),
+            );
+        }
+        None => {}
+    }
+}
+
+/// Channels, branches and glow.
+fn show_channels(
+    commands: &mut Commands,
+    shown: &mut Shown,
+    lit: &mut Lit,
+    on: &[(&ActiveFlash, FlashLight, [f32; 2], Eye)],
+    extinction: f32,
+) {
+    let (Some(meshes), Some(materials)) = (&mut lit.meshes, &mut lit.materials) else {
+        return; // a server draws nothing
+    };
+    for slot in &mut shown.slots {
+        let over = |id: u64| on.iter().all(|(active, ..)| active.flash.id != id);
+        if slot.flash.is_some_and(over) {
+            slot.flash = None;
+            for part in slot.parts {
+                if let Ok((.., mut visible)) = lit.parts.get_mut(part) {
+                    visible.set_if_neq(Visibility::Hidden);
+                }
+            }
+        }
+    }
+    for (active, light, currents, eye) in on {
+        let known = shown.slots.iter().position(|slot| slot.flash == Some(active.flash.id));
+        let index = known.unwrap_or_else(|| {
+            let width_m = WIDTH_M.max(LEAST_PX * eye.pixel * light.distance_m as f32);
+            let origin = active.flash.place_m;
+            let channel = &active.channel;
+            let glow = shown
+                .glow_mesh
+                .get_or_insert_with(|| meshes.add(shapes::glow()))
+                .clone();
+            let all = [
+                meshes.add(shapes::tubes(std::iter::once(channel.seen()), origin, width_m)),
+                meshes.add(shapes::tubes(
+                    channel.branches().iter().map(Vec::as_slice),
+                    origin,
+                    0.6 * width_m,
+                )),
+                glow,
+            ];
+            let base = origin.y + active.flash.cloud_base_m;
+            let places = [origin, origin, channel.glow_centre().with_y(base)].map(|at| at.as_vec3());
+            let index = match shown.slots.iter().position(|slot| slot.flash.is_none()) {
+                Some(index) => index,
+                None => {
+                    shown.slots.push(new_slot(commands, materials));
+                    shown.slots.len() - 1
+                }
+            };
+            let slot = &mut shown.slots[index];
+            (slot.flash, slot.width_m) = (Some(active.flash.id), width_m);
+            for ((part, mesh), place) in slot.parts.into_iter().zip(all).zip(places) {
+                commands
+                    .entity(part)
+                    .insert((Mesh3d(mesh), Transform::from_translation(place), Visibility::Visible));
+            }
+            index
+        });
+        let slot = &shown.slots[index];
+        // A tube that sends by Lambert's law shows its flux over π² times its width.
+        let tube = |part: usize, width: f32| currents[part] * light.lumens_m_a[part] as f32 / (PI * PI * width);
+        let luminances = [
+            tube(0, slot.width_m),
+            tube(1, 0.6 * slot.width_m),
+            currents[0] * light.glow_cd_m2_a as f32,
+        ];
+        // Haze is drawn over what stands in depth, not over what is added to the picture.
+        for (part, luminance) in luminances.into_iter().enumerate() {
+            let is_glow = part == 2;
+            if let Some(mut material) = materials.get_mut(&slot.materials[part]) {
+                material.light = (luminance * COLOUR).extend(if is_glow { extinction } else { 0.0 });
+                material.glow = Vec4::new(f32::from(u8::from(is_glow)), (active.flash.id % 4096) as f32, 0.0, 0.0);
+            }
+        }
+    }
+}
+
+fn new_slot(commands: &mut Commands, materials: &mut Assets<LightningMaterial>) -> Slot {
+    let materials = core::array::from_fn(|part| {
+        materials.add(LightningMaterial {
+            added: part == 2,
+            ..default()
+        })
+    });
+    let parts = core::array::from_fn(|part| {
+        let material: Handle<LightningMaterial> = Handle::clone(&materials[part]);
+        commands
+            .spawn((
+                Name::new(["lightning channel", "lightning branches", "lightning glow"][part]),
+                MeshMaterial3d(material),
+                NoFrustumCulling,
+                NotShadowCaster,
+                NotShadowReceiver,
+                KeepDry,
+                MovesInRain,
+                Visibility::Hidden,
+                Transform::default(),
+            ))
+            .id()
+    });
+    Slot {
+        flash: None,
+        parts,
+        materials,
+        width_m: WIDTH_M,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_added_is_taken_away_again_and_the_apps_own_changes_stay() {
+        let mut added = Added::default();
+        let mut value = added.with(10.0, 5.0);
+        assert_eq!(value, 15.0);
+        value = added.with(value, 2.0);
+        assert_eq!(value, 12.0);
+        // The app sets another value amid the flash.
+        value = added.with(40.0, 3.0);
+        assert_eq!(value, 43.0);
+        value = added.with(value, 0.0);
+        assert_eq!(value, 40.0);
+        assert_eq!(added.with(value, 0.0), 40.0);
+        // The same value again, amid nothing.
+        assert_eq!(added.with(43.0, 1.0), 44.0);
+    }
+}
