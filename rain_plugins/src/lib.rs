@@ -98,7 +98,7 @@ impl Plugin for RainSchedulePlugin {
 /// What users type.
 pub mod prelude {
     pub use crate::cover::CoverSettings;
-    pub use crate::haze::{ArtistFog, HazeMask, HazePlugin, HazeSettings};
+    pub use crate::haze::{ArtistFog, FarRainSettings, HazeMask, HazePlugin, HazeSettings};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
     pub use crate::rainfall::{CardSettings, RainView};
     pub use crate::render_adapter::RainRenderStatus;

@@ -20,6 +20,8 @@ pub enum PassName {
     Reflection,
     /// Haze of rain.
     Haze,
+    /// Far showers as particles.
+    FarRain,
     /// Streak textures, made once.
     StreakTextures,
     /// Splashes of rain.
@@ -45,6 +47,7 @@ impl PassName {
             Self::Waves => "waves",
             Self::Reflection => "reflection",
             Self::Haze => "haze",
+            Self::FarRain => "far_rain",
             Self::StreakTextures => "streak_textures",
             Self::Splash => "splash",
             Self::Lattice => "lattice",
@@ -132,6 +135,8 @@ pub struct Report {
     pub drops: VecDeque<u32>,
     /// Cards handed to the GPU in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
     pub cards: VecDeque<u32>,
+    /// Particles of far rain in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
+    pub far_rain: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
     pub gpu_memory_bytes: usize,
 }
@@ -166,6 +171,11 @@ impl RainReport {
     /// Notes how many cards a frame drew.
     pub fn cards(&self, count: u32) {
         keep(&mut self.lock().cards, count);
+    }
+
+    /// Notes how many particles of far rain a frame drew.
+    pub fn far_rain(&self, count: u32) {
+        keep(&mut self.lock().far_rain, count);
     }
 
     /// Notes the GPU memory in use.

@@ -2,6 +2,7 @@
 
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
+use rain_core::rainfall::FarRainSettings;
 use rain_render::haze::MAX_HAZE_LAMPS;
 
 /// Longest accepted way through the rain. Units: m.
@@ -29,6 +30,9 @@ pub struct HazeSettings {
     pub glow: f32,
     /// Fog as an artist sets it, in place of the rain's. Default: none.
     pub artist: Option<ArtistFog>,
+    /// How much of it is drawn as far rain where [`RainView::far_rain`](crate::rainfall::RainView::far_rain) is on.
+    #[reflect(ignore)]
+    pub far_rain: FarRainSettings,
 }
 
 /// Fog the artists' way (Lagarde 2013): denser in heavier rain, losing its colour as the rain sets in. Nothing physical.
@@ -69,6 +73,7 @@ impl Default for HazeSettings {
             lamps: MAX_HAZE_LAMPS as u32,
             glow: 1.0,
             artist: None,
+            far_rain: FarRainSettings::default(),
         }
     }
 }
@@ -85,6 +90,7 @@ impl HazeSettings {
         in_range("limit_m", self.limit_m.into(), 10.0, furthest, "10 to 1e5 m")?;
         in_range("lamps", self.lamps.into(), 0.0, MAX_HAZE_LAMPS as f64, "0 to 16")?;
         in_range("glow", self.glow.into(), 0.0, 100.0, "0 to 100")?;
+        self.far_rain.validated()?;
         if let Some(fog) = self.artist {
             in_range("density_per_m", fog.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
             in_range("gain", fog.gain.into(), 0.0, 1e3, "0 to 1000")?;

@@ -145,6 +145,7 @@ pub(super) fn prepare_haze(
                 packed,
                 weather_mm_h: *weather,
             }),
+            far: shot.far,
             cloud_m: shot.cloud_m,
             limit_m: shot.limit_m,
             fog: shot.fog,

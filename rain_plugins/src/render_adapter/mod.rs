@@ -6,12 +6,14 @@
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
 //! | `haze.rs` | all three for haze |
+//! | `far_rain.rs` | all three for far rain |
 //! | `lattice.rs` | all three for cards and their streak textures |
 //! | `splash.rs` | all three for splashes |
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
+mod far_rain;
 mod haze;
 mod lattice;
 mod lens;
@@ -325,6 +327,7 @@ impl Plugin for RainRenderPlugin {
             .init_gpu_resource::<prepare::RainGpu>()
             .init_gpu_resource::<splash::SplashViews>()
             .init_gpu_resource::<haze::HazeViews>()
+            .init_gpu_resource::<far_rain::FarRainViews>()
             .init_gpu_resource::<lattice::LatticeViews>()
             .init_resource::<lattice::ExtractedStreaks>()
             .init_gpu_resource::<lens::LensViews>()
@@ -338,6 +341,7 @@ impl Plugin for RainRenderPlugin {
                     extract::extract_map,
                     splash::extract_splashes,
                     haze::extract_haze,
+                    far_rain::extract_far_rain,
                     lattice::extract_cards,
                     lens::extract_lenses,
                 ),
@@ -347,6 +351,7 @@ impl Plugin for RainRenderPlugin {
                 (
                     (
                         haze::prepare_haze,
+                        far_rain::prepare_far_rain,
                         splash::prepare_splashes,
                         lattice::prepare_cards,
                         lens::prepare_lenses,
@@ -382,7 +387,13 @@ impl Plugin for RainRenderPlugin {
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transmissive_pass_3d)
                         .before(main_transparent_pass_3d),
-                    (haze::haze_over_sky, splash::splash, lattice::lattice, record::rainfall)
+                    (
+                        haze::haze_over_sky,
+                        far_rain::far_rain,
+                        splash::splash,
+                        lattice::lattice,
+                        record::rainfall,
+                    )
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d),

@@ -463,6 +463,8 @@ pub struct RainSettings {
     pub glow: f64,
     /// Whether rain beyond the single drops is drawn, as cards of many. Default: on a GPU, not on a software adapter.
     pub cards: Option<bool>,
+    /// Whether showers seen from outside are drawn as particles over their haze. Default: on a GPU, not on a software adapter.
+    pub far_rain: Option<bool>,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -504,6 +506,7 @@ impl Default for RainSettings {
             cloud_base_m: 1000.0,
             glow: 1.0,
             cards: None,
+            far_rain: None,
             lens: Lens::Off,
             look: WetLook::Physical,
         }

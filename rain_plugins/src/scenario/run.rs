@@ -389,6 +389,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
                 "splash" => &["rain_splash_make", "rain_splash"],
                 "haze" => &["rain_haze_areas", "rain_haze"],
                 "lattice" => &["rain_lattice"],
+                "far_rain" => &["rain_far_rain"],
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
                 "water_map" => &["rain_water_map"],
                 "lens" => &["rain_lens"],

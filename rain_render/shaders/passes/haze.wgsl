@@ -82,12 +82,21 @@ fn azimuth_place(towards: vec3<f32>) -> f32 {
 // Optical depth along the ground at an azimuth up to a distance. Error: 0.01 of it as a mean over pixels; for one 0.027
 // of the extinction times the distance to the last rain.
 fn ground_depth(azimuth: f32, distance: f32) -> f32 {
+    return grid_depth(0u, azimuth, distance);
+}
+
+// The same of the far rain, over its share.
+fn far_ground_depth(azimuth: f32, distance: f32) -> f32 {
+    return grid_depth(RAIN_HAZE_AZIMUTHS * (RAIN_HAZE_INTERVALS + 1u), azimuth, distance);
+}
+
+fn grid_depth(first: u32, azimuth: f32, distance: f32) -> f32 {
     let knot = clamp(rain_haze_place(distance, view.grid.z), 0.0, f32(RAIN_HAZE_INTERVALS) - 0.001);
     let i = u32(knot);
     let low = rain_haze_knot(f32(i), view.grid.z);
     let high = rain_haze_knot(f32(i) + 1.0, view.grid.z);
     let t = clamp((distance - low) / (high - low), 0.0, 1.0);
-    let row = u32(azimuth) * (RAIN_HAZE_INTERVALS + 1u) + i;
+    let row = first + u32(azimuth) * (RAIN_HAZE_INTERVALS + 1u) + i;
     let next = row + RAIN_HAZE_INTERVALS + 1u;
     return mix(mix(grid[row], grid[row + 1u], t), mix(grid[next], grid[next + 1u], t), fract(azimuth));
 }
@@ -121,6 +130,10 @@ fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
             before_depth = depth;
             before_drawn = metres;
         }
+    }
+    if (view.far.x > 0.0) {
+        let share = view.far.x * rain_far_pitch_weight(towards.y);
+        drawn += share * (far_ground_depth(azimuth, flat * ends.y) - far_ground_depth(azimuth, flat * ends.x)) / flat;
     }
     return vec2<f32>(total, max(total - drawn, 0.0));
 }

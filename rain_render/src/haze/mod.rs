@@ -12,5 +12,5 @@ mod params;
 mod prepare;
 
 pub use encode::{encode_haze, encode_haze_areas, encode_haze_coverage};
-pub use params::{HazeAreas, HazeFog, HazeInput, MAX_HAZE_LAMPS};
+pub use params::{HazeAreas, HazeFar, HazeFog, HazeInput, MAX_HAZE_LAMPS};
 pub use prepare::{HazeGpu, HazeTextures, HazeViewGpu};

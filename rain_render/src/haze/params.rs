@@ -21,6 +21,15 @@ pub struct HazeAreas<'a> {
     pub weather_mm_h: f32,
 }
 
+/// Far rain that is drawn as particles, for haze to leave out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HazeFar {
+    /// [`rain_core::rainfall::FarRain::share`]. Domain: [0, 0.95].
+    pub share: f32,
+    /// Extinction of the rain outside areas. Units: 1/m.
+    pub outside_per_m: f32,
+}
+
 /// Fog as an artist sets it, in place of the rain's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HazeFog {
@@ -55,6 +64,8 @@ pub struct HazeInput<'a> {
     pub rates: &'a RateExtinction,
     /// `None`: the rain is the same everywhere.
     pub areas: Option<HazeAreas<'a>>,
+    /// `None`: no far rain is drawn.
+    pub far: Option<HazeFar>,
     /// Base of the cloud over the eye's height. Units: m.
     pub cloud_m: f32,
     /// Longest way through the rain. Units: m. Domain: [10, 1e6].
@@ -150,6 +161,9 @@ impl HazeInput<'_> {
             uneven: f32::from(u8::from(self.areas.is_some())),
             lamps: self.lamps.len().min(MAX_HAZE_LAMPS) as u32,
             grid: [start, step, self.scale(), RateExtinction::knots_per_ln() as f32],
+            far: self
+                .far
+                .map_or([0.0; 4], |far| [far.share, far.outside_per_m, 0.0, 0.0]),
             drawn: fours(&self.drawn_m),
             rates: fours(&self.rates.ln_per_m),
             lamp,

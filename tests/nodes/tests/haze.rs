@@ -5,9 +5,9 @@ use rain_core::haze::{
     FogTable, HazeSharing, LUMA_LINEAR, RateExtinction, cone_span_m, desaturated, extinction_per_m, lamp_glow_per_m,
 };
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32, AreaRain, AreaSettings, AreaShape};
-use rain_core::rainfall::{CLASS_COUNT, Distribution, Lamp, Spectrum};
+use rain_core::rainfall::{CLASS_COUNT, Distribution, FarAccount, FarEye, Lamp, Spectrum};
 use rain_render::haze::{
-    HazeAreas, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    HazeAreas, HazeFar, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
 };
 use rain_render::rainfall::{DEPTH_FORMAT, Lighting};
 
@@ -32,6 +32,7 @@ struct Shot<'a> {
     rate: f64,
     drawn_m: [f32; 64],
     areas: Option<HazeAreas<'a>>,
+    far: Option<HazeFar>,
     cloud_m: f32,
     fog: Option<HazeFog>,
     lamps: &'a [Lamp],
@@ -49,6 +50,7 @@ impl Default for Shot<'_> {
             rate: 25.0,
             drawn_m: [0.0; 64],
             areas: None,
+            far: None,
             cloud_m: 1000.0,
             fog: None,
             lamps: &[],
@@ -127,6 +129,7 @@ impl Shot<'_> {
             drawn_m: self.drawn_m,
             rates: &rates,
             areas: self.areas,
+            far: self.far,
             cloud_m: self.cloud_m,
             limit_m: LIMIT_M,
             fog: self.fog,
@@ -549,4 +552,68 @@ fn four_samples_show_what_one_shows() {
     for (a, b) in one.take(&gpu).iter().zip(four.take(&gpu)) {
         assert!((a[0] - b[0]).abs() < 2.0 * HALF_STEP as f32, "{a:?} {b:?}");
     }
+}
+
+#[test]
+fn haze_leaves_out_what_is_drawn_as_far_rain() {
+    let Some(gpu) = device() else { return };
+    let field = field();
+    let weather = 5.0;
+    let mut packed = AreaFieldF32::default();
+    assert!(field.pack(DVec2::ZERO, LIMIT_M.into(), &mut packed));
+    let rates = RateExtinction::new(Distribution::MarshallPalmer, 2.0);
+    let eye = FarEye {
+        eye_m: DVec3::ZERO,
+        areas: &field,
+        weather_mm_h: weather,
+        rates: &rates,
+    };
+    let mut account = FarAccount::default();
+    let mut seen = 0;
+    for (wall, turn) in [(None, 0.0), (Some(3500.0), 0.1), (Some(900.0), -0.2), (Some(40.0), 0.4)] {
+        let rotation = Quat::from_rotation_y(turn) * Quat::from_rotation_x(0.25);
+        let ahead = (rotation * Vec3::NEG_Z).as_dvec3();
+        account.look(&eye, DVec2::new(ahead.x, ahead.z), 0.8, 257, LIMIT_M.into());
+        let far = HazeFar {
+            share: 0.6,
+            outside_per_m: account.outside_per_m() as f32,
+        };
+        let shot = |far: Option<HazeFar>| Shot {
+            rotation,
+            rate: field.rate_at(DVec2::ZERO, weather),
+            wall_m: wall,
+            areas: Some(HazeAreas {
+                packed: &packed,
+                weather_mm_h: weather as f32,
+            }),
+            far,
+            ..Shot::default()
+        };
+        let mut whole = Vec::new();
+        shot(None).each(&gpu, |_, rgb| whole.push(rgb[0]));
+        let (mut sums, mut number) = ([0.0; 2], 0);
+        let left = shot(Some(far));
+        left.each(&gpu, |towards, rgb| {
+            let before = whole[number];
+            number += 1;
+            if number % 5 != 0 || before < 0.05 {
+                return;
+            }
+            let found = (rgb[0] / before).ln();
+            let expected = 0.6 * account.far_depth(&eye, towards, left.way(towards), left.cloud_m.into());
+            assert!(found > -2.0 * HALF_STEP / before, "haze only ever loses: {found}");
+            sums[0] += found;
+            sums[1] += expected;
+            seen += usize::from(expected > 0.05);
+        });
+        // Both are grids along azimuths, of different knots.
+        let allowed = 0.03 * sums[1] + 4.0 * HALF_STEP * (number / 5) as f64;
+        assert!((sums[0] - sums[1]).abs() < allowed, "{wall:?}: {sums:?}");
+        assert_eq!(
+            wall == Some(40.0),
+            sums[1] < 1.0,
+            "nothing is far rain near the eye: {sums:?}"
+        );
+    }
+    assert!(seen > 300, "{seen}");
 }

@@ -15,6 +15,7 @@
 //! | `field_f32.rs` | the same for what runs per drop or texel, and its packed form |
 //! | `map.rs` | the rain from above, for plots |
 //! | `far.rs` | an area seen from outside: where its container stands and how large it is |
+//! | `in_sight.rs` | the same for every outline, soft edge included, and how near the rain is |
 //!
 //! # How areas combine
 //! At a point with weights w (1 well inside, 0 well outside, half at the border) and the weather's rate W:
@@ -32,6 +33,7 @@ mod ellipse;
 mod far;
 mod field;
 mod field_f32;
+mod in_sight;
 mod integral;
 mod map;
 mod motion;

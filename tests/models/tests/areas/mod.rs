@@ -2,6 +2,7 @@
 
 mod containers;
 mod far;
+mod far_rain;
 mod rates;
 
 use glam::DVec2;
