@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use rain_core::haze::{FIRST_RATE_MM_H, FOG_TABLE_END_M, FOG_TABLE_KNOTS, RATE_KNOTS};
-use rain_core::rainfall::{FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, RANGE_CAP_M};
+use rain_core::rainfall::{FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, RANGE_CAP_M};
 use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::RING_FADE;
@@ -156,6 +156,7 @@ pub fn constants() -> String {
         ("RAIN_FAR_HIGH_TO", FAR_PITCH[1][1]),
         ("RAIN_FAR_HEIGHT", FAR_HEIGHT),
         ("RAIN_FAR_OPACITY", FAR_OPACITY),
+        ("RAIN_FAR_SHADE", FAR_SHADE),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }

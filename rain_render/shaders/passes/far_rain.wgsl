@@ -35,7 +35,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> FarVertex {
         view.sun_direction.xyz,
         view.sun.rgb,
         normalize(particle.centre),
-    ) / (RAIN_DROP_TRANSMITTED + RAIN_DROP_REFLECTED);
+    ) * rain_far_shade(particle.phase) / (RAIN_DROP_TRANSMITTED + RAIN_DROP_REFLECTED);
     out.shape = vec2<f32>(RAIN_FAR_OPACITY * particle.presence, particle.phase);
     return out;
 }

@@ -16,8 +16,8 @@ use crate::rainfall::{FieldMotion, LatticeEye, RainViewVolume};
 const LEVELS: u32 = 9;
 /// Distance on the ground of the first level; each further one serves twice the distance. Units: m.
 const FIRST_LEVEL_M: f64 = 64.0;
-/// Width of a particle over its level's distance: 3 to 9 pixels at a focal length of 620. Units: none.
-const WIDTH: f64 = 1.0 / 96.0;
+/// Width of a particle over its level's distance: 4 to 11 pixels at a focal length of 620. Units: none.
+const WIDTH: f64 = 1.0 / 80.0;
 /// Edge of a cell over a particle's width.
 const CELL: f64 = 4.0;
 /// Most particles of a cell.

@@ -327,7 +327,7 @@ fn particles_are_larger_and_fewer_further_away_and_of_one_size_in_the_picture() 
         for p in &rain.particles {
             let way = f64::from(Vec3::from(p.centre).with_y(0.0).length());
             let pixels = 620.0 * 2.0 * f64::from(p.half_width) / way;
-            assert!((3.0..9.5).contains(&pixels), "{way} m: {pixels} px");
+            assert!((3.8..11.4).contains(&pixels), "{way} m: {pixels} px");
         }
     }
 }
@@ -501,7 +501,7 @@ fn far_containers_of_all_outlines_hold_the_rain_in_sight_with_its_soft_edge() {
             }
         }
     }
-    assert!(wholes > 20 && parts > 100 && none > 100, "{wholes} {parts} {none}");
+    assert!(wholes > 10 && parts > 100 && none > 100, "{wholes} {parts} {none}");
 }
 
 #[test]
@@ -529,7 +529,7 @@ fn the_far_container_shrinks_on_approach_and_its_anchor_never_jumps() {
         before = width;
     }
     assert!(
-        before < 300.0 && fit(DVec2::new(0.0, 900.0)).seen == Seen::Whole,
+        before < 540.0 && fit(DVec2::new(0.0, 900.0)).seen == Seen::Whole,
         "{before}"
     );
     // Past its side: N12.
