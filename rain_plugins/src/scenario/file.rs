@@ -622,6 +622,8 @@ pub struct Outputs {
     pub masks: Vec<Mask>,
     /// Whether `contact.png` is written: all captures small, with captions. Default: true.
     pub contact_sheet: bool,
+    /// Whether `frame_0000_above.png` … are written: each capture's drops and far rain from above. Default: false.
+    pub above: bool,
     /// Whether `timeline.png` is written: intensity, wetness, level and budget over time. Default: true.
     pub timeline: bool,
 }
@@ -633,6 +635,7 @@ impl Default for Outputs {
             frames: true,
             masks: Vec::new(),
             contact_sheet: true,
+            above: false,
             timeline: true,
         }
     }

@@ -10,7 +10,7 @@ use super::error::ScenarioError;
 use super::expect::{CaptureMasks, Evaluator, Evidence};
 use super::file::{Mask, Scenario, ScenePart};
 use super::masks;
-use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, frame_name, mask_name};
+use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, above_name, frame_name, mask_name};
 use super::plot;
 use super::report::{Budget, Counts, Memory, PassRow, Report, Tally, Timings};
 use super::session::Session;
@@ -142,6 +142,9 @@ pub fn run(
         frame_ms.push(capture.frame_ms);
         if scenario.outputs.frames {
             output.write_picture(&frame_name(index), &capture.frame)?;
+        }
+        if let Some(above) = &capture.above {
+            output.write_picture(&above_name(index), above)?;
         }
         for (mask, texels) in &capture.masks {
             let bytes = masks::encode(scenario.outputs.size, texels)

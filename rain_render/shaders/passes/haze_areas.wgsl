@@ -17,8 +17,9 @@ fn rate_about(place: vec2<f32>) -> vec2<f32> {
     var row = 1u;
     for (var i = 0u; i < u32(head.x); i += 1u) {
         let area = packed_area(row, place);
-        even = min(even, abs(area.distance) - 0.5 * area.transition);
-        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition), head.z);
+        // What is painted changes from place to place inside.
+        even = min(even, select(abs(area.distance), area.distance, area.painted) - 0.5 * area.transition);
+        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition) * area.density, head.z);
         row = area.next;
     }
     return vec2<f32>(clamp(found.x * found.y, 0.0, 500.0), even);

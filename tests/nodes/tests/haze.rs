@@ -13,6 +13,7 @@ use rain_render::rainfall::{DEPTH_FORMAT, Lighting};
 
 use crate::device::{Device, device, kernel, library};
 use crate::maps::read_map;
+use crate::rain_areas::painting;
 
 const SIDE: u32 = 64;
 const NEAR_M: f32 = 0.1;
@@ -358,6 +359,8 @@ fn field() -> AreaField {
             shape,
             rain,
             transition_m,
+            // The polygon is painted.
+            density: (transition_m == 30.0).then(|| painting(DVec2::new(330.0, 190.0))),
             ..AreaSettings::default()
         };
         settings.check().expect("an area");

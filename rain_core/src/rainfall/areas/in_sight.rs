@@ -139,7 +139,8 @@ impl AreaField {
             .filter(|area| !matches!(area.rain, AreaRain::Scale(scale) if scale <= 1.0))
             .map(|area| {
                 let width = area.transition_m.max(LEAST_PASSAGE_M);
-                area.strength * border_weight(area.distance_m(place_m), width)
+                let painted = area.density.as_ref().map_or(1.0, |map| map.at(place_m - area.centre_m));
+                area.strength * border_weight(area.distance_m(place_m), width) * painted
             })
             .fold(0.0, f64::max)
     }
