@@ -447,9 +447,9 @@ struct FarRainParams {
     sun: vec4<f32>,
     // Unit direction that particles are drawn out along; w unused.
     axis: vec4<f32>,
-    // Base of the cloud over the eye, m.
+    // Base of the cloud over the eye, and how far below it rain thins out, m.
     cloud: f32,
-    pad_a: f32,
+    thin: f32,
     pad_b: f32,
     pad_c: f32,
 }
@@ -598,7 +598,8 @@ struct HazeView {
     lamps: u32,
     // Areas' grid: first azimuth and step, rad; scale of its knots; knots of rates for each unit of ln.
     grid: vec4<f32>,
-    // Far rain, which is drawn as particles: its share of what may be; extinction of the rain outside areas, 1/m.
+    // Far rain, which is drawn as particles: its share of what may be; extinction of the rain outside areas, 1/m. z: how far
+    // below the cloud's base rain thins out, m.
     far: vec4<f32>,
     // Metres of rain that what is drawn stands for, by distance.
     drawn: array<vec4<f32>, 16>,

@@ -358,7 +358,7 @@ pub struct FarRainParams {
     pub sun: [f32; 4],
     pub axis: [f32; 4],
     pub cloud: f32,
-    pub pad_a: f32,
+    pub thin: f32,
     pub pad_b: f32,
     pub pad_c: f32,
 }
@@ -544,7 +544,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(LampParams: place, intensity, direction, limits),
         layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
             lamps, pad_a, pad_b, pad_c, cover, lamp),
-        layout!(FarRainParams: clip_from_eye, environment, ambient, sun_direction, sun, axis, cloud, pad_a, pad_b, pad_c),
+        layout!(FarRainParams: clip_from_eye, environment, ambient, sun_direction, sun, axis, cloud, thin, pad_b, pad_c),
         layout!(FarParticle: centre, presence, half_width, phase, rank, level),
         layout!(Card: centre, facing, turn, place, layers),
         layout!(SplashView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, planes, wind,

@@ -47,7 +47,8 @@ pub use fall::{
 };
 pub use far_rain::{
     FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, FarAccount, FarEye, FarParticle, FarRain,
-    FarRainSettings, FarRainView, MAX_FAR_PARTICLES, far_begin, far_pitch_weight, far_presence, far_profile,
+    FarRainSettings, FarRainView, MAX_FAR_PARTICLES, cloud_share, far_begin, far_pitch_weight, far_presence,
+    far_profile,
 };
 pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
 pub use follow::{Follow, FollowSettings, FollowShape, heading_margin_rad};

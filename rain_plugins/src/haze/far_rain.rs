@@ -15,6 +15,8 @@ pub(crate) struct FarRainShot {
     pub rain: Arc<FarRain>,
     /// Base of the cloud over the eye. Units: m.
     pub cloud_m: f32,
+    /// How far below it rain thins out. Units: m.
+    pub thin_m: f32,
 }
 
 /// What a view draws of far rain this frame; extracted to the render world.
@@ -60,8 +62,12 @@ impl FarRainViewFrame {
             self.keep(rain);
             return Err(SkipReason::NoRain);
         }
-        let cloud_m = view.cloud_m as f32;
-        Ok(&self.shot.insert(FarRainShot { rain, cloud_m }).rain)
+        let shot = FarRainShot {
+            rain,
+            cloud_m: view.cloud_m as f32,
+            thin_m: view.thin_m as f32,
+        };
+        Ok(&self.shot.insert(shot).rain)
     }
 
     fn keep(&mut self, rain: Arc<FarRain>) {

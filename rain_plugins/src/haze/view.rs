@@ -48,6 +48,7 @@ pub(crate) struct HazeShot {
     /// What is drawn of it as far rain.
     pub far: Option<HazeFar>,
     pub cloud_m: f32,
+    pub thin_m: f32,
     pub limit_m: f32,
     pub fog: Option<HazeFog>,
     pub lamps: Vec<Lamp>,
@@ -263,6 +264,7 @@ fn aim_haze(
         });
         let rates = frame.rates(&field, settings.efficiency);
         let cloud_m = settings.cloud_base_m - eye.y;
+        let thin_m = settings.cloud_softness * cloud_m.max(0.0);
         // What particles show is taken off the physical haze alone.
         let far = if settings.artist.is_some() || !view.draws_far_rain(*software) {
             Err(SkipReason::Disabled)
@@ -283,6 +285,7 @@ fn aim_haze(
                     motion: &field.motion_after(since_tick),
                     seed: seed.0,
                     cloud_m: cloud_m.into(),
+                    thin_m: thin_m.into(),
                     limit_m: limit,
                 },
             )
@@ -308,6 +311,7 @@ fn aim_haze(
             areas: packed,
             far,
             cloud_m,
+            thin_m,
             limit_m: settings.limit_m,
             fog: settings.artist.zip(density).map(|(fog, density)| HazeFog {
                 density_per_m: density as f32,

@@ -96,6 +96,7 @@ pub(super) fn prepare_far_rain(
             clip_from_eye: view.clip_from_view * Mat4::from_quat(rotation.inverse()),
             lighting: view_lighting(&scene, environment, camera.exposure),
             cloud_m: seen.shot.cloud_m,
+            thin_m: seen.shot.thin_m,
         };
         let environment = environment.map(|(i, _)| -> &wgpu::TextureView { &i.texture_view });
         let slot = far.views.entry(entity).or_insert_with(|| FarRainViewGpu::new(device));

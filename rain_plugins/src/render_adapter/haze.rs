@@ -147,6 +147,7 @@ pub(super) fn prepare_haze(
             }),
             far: shot.far,
             cloud_m: shot.cloud_m,
+            thin_m: shot.thin_m,
             limit_m: shot.limit_m,
             fog: shot.fog,
             lamps: &lamps,

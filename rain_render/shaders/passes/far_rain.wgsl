@@ -41,13 +41,11 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> FarVertex {
 }
 
 fn opacity(in: FarVertex) -> f32 {
-    if (in.point.y > view.cloud) {
-        return 0.0;
-    }
     let towards = normalize(in.point);
     // A line that runs along the rain is in it for longer.
     let sine = max(length(cross(towards, view.axis.xyz)), 0.3);
-    let whole = in.shape.x * rain_far_pitch_weight(towards.y) / sine;
+    let under = rain_cloud_share(in.point.y, view.cloud, view.thin);
+    let whole = in.shape.x * under * rain_far_pitch_weight(towards.y) / sine;
     return clamp(whole * rain_far_profile(in.place, in.shape.y), 0.0, 0.99);
 }
 

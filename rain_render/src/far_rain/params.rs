@@ -19,6 +19,8 @@ pub struct FarRainInput<'a> {
     pub lighting: Lighting,
     /// Base of the cloud over the eye's height. Units: m.
     pub cloud_m: f32,
+    /// How far below it rain thins out. Units: m.
+    pub thin_m: f32,
 }
 
 impl FarRainInput<'_> {
@@ -34,7 +36,7 @@ impl FarRainInput<'_> {
             sun: self.lighting.sun.extend(0.0).to_array(),
             axis: self.axis.extend(0.0).to_array(),
             cloud: self.cloud_m,
-            pad_a: 0.0,
+            thin: self.thin_m,
             pad_b: 0.0,
             pad_c: 0.0,
         }

@@ -68,6 +68,8 @@ pub struct HazeInput<'a> {
     pub far: Option<HazeFar>,
     /// Base of the cloud over the eye's height. Units: m.
     pub cloud_m: f32,
+    /// How far below it rain thins out, straight; 0: a sharp base. Units: m.
+    pub thin_m: f32,
     /// Longest way through the rain. Units: m. Domain: [10, 1e6].
     pub limit_m: f32,
     /// `None`: the haze of the rain.
@@ -161,9 +163,12 @@ impl HazeInput<'_> {
             uneven: f32::from(u8::from(self.areas.is_some())),
             lamps: self.lamps.len().min(MAX_HAZE_LAMPS) as u32,
             grid: [start, step, self.scale(), RateExtinction::knots_per_ln() as f32],
-            far: self
-                .far
-                .map_or([0.0; 4], |far| [far.share, far.outside_per_m, 0.0, 0.0]),
+            far: [
+                self.far.map_or(0.0, |far| far.share),
+                self.far.map_or(0.0, |far| far.outside_per_m),
+                self.thin_m.clamp(0.0, self.cloud_m.max(0.0)),
+                0.0,
+            ],
             drawn: fours(&self.drawn_m),
             rates: fours(&self.rates.ln_per_m),
             lamp,

@@ -14,6 +14,7 @@ const NEAR_M: f32 = 0.1;
 const HALF: f32 = 0.6;
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const CLOUD_M: f32 = 60.0;
+const THIN_M: f32 = 25.0;
 /// What a drop shows in surroundings of radiance 1 goes on whole.
 const AMBIENT: f32 = 0.5;
 
@@ -78,6 +79,7 @@ fn draw(gpu: &Device, particles: &[FarParticle], axis: Vec3, wall_m: Option<f32>
             sun: Vec3::ZERO,
         },
         cloud_m: CLOUD_M,
+        thin_m: THIN_M,
     };
     view.prepare(&gpu.device, &gpu.queue, &far, &input, None);
     assert_eq!(view.particles() as usize, particles.len());
@@ -137,7 +139,7 @@ fn far_particles_obscure_what_the_cpu_says() {
                     let normal = axis.cross(centre.cross(axis)).normalize();
                     let ahead = -towards.z * centre.dot(normal) / towards.dot(normal);
                     if wall.is_none_or(|wall| ahead < wall) {
-                        let opacity = p.opacity(towards, axis, CLOUD_M);
+                        let opacity = p.opacity(towards, axis, [CLOUD_M, THIN_M]);
                         expected += (AMBIENT * p.shade() - expected) * opacity;
                         through *= 1.0 - opacity;
                     }

@@ -35,6 +35,7 @@ struct Shot<'a> {
     areas: Option<HazeAreas<'a>>,
     far: Option<HazeFar>,
     cloud_m: f32,
+    thin_m: f32,
     fog: Option<HazeFog>,
     lamps: &'a [Lamp],
     ambient: Vec3,
@@ -53,6 +54,7 @@ impl Default for Shot<'_> {
             areas: None,
             far: None,
             cloud_m: 1000.0,
+            thin_m: 0.0,
             fog: None,
             lamps: &[],
             ambient: Vec3::ZERO,
@@ -132,6 +134,7 @@ impl Shot<'_> {
             areas: self.areas,
             far: self.far,
             cloud_m: self.cloud_m,
+            thin_m: self.thin_m,
             limit_m: LIMIT_M,
             fog: self.fog,
             lamps: self.lamps,
@@ -590,6 +593,7 @@ fn haze_leaves_out_what_is_drawn_as_far_rain() {
                 weather_mm_h: weather as f32,
             }),
             far,
+            thin_m: 400.0,
             ..Shot::default()
         };
         let mut whole = Vec::new();
@@ -603,7 +607,14 @@ fn haze_leaves_out_what_is_drawn_as_far_rain() {
                 return;
             }
             let found = (rgb[0] / before).ln();
-            let expected = 0.6 * account.far_depth(&eye, towards, left.way(towards), left.cloud_m.into());
+            let expected = 0.6
+                * account.far_depth(
+                    &eye,
+                    towards,
+                    left.way(towards),
+                    left.cloud_m.into(),
+                    left.thin_m.into(),
+                );
             assert!(found > -2.0 * HALF_STEP / before, "haze only ever loses: {found}");
             sums[0] += found;
             sums[1] += expected;
@@ -619,4 +630,69 @@ fn haze_leaves_out_what_is_drawn_as_far_rain() {
         );
     }
     assert!(seen > 300, "{seen}");
+}
+
+#[test]
+fn rain_thins_out_below_its_cloud() {
+    let Some(gpu) = device() else { return };
+    let field = field();
+    let mut packed = AreaFieldF32::default();
+    assert!(field.pack(DVec2::ZERO, LIMIT_M.into(), &mut packed));
+    let areas = HazeAreas {
+        packed: &packed,
+        weather_mm_h: 5.0,
+    };
+    let even = extinction_per_m(&spectrum(25.0), 2.0);
+    for uneven in [false, true] {
+        let shot = Shot {
+            rotation: Quat::from_rotation_x(0.3),
+            rate: if uneven { field.rate_at(DVec2::ZERO, 5.0) } else { 25.0 },
+            wall_m: None,
+            cloud_m: 700.0,
+            thin_m: 300.0,
+            areas: uneven.then_some(areas),
+            ..Shot::default()
+        };
+        let (mut sums, mut number, mut thinned) = ([0.0; 2], 0, 0);
+        shot.each(&gpu, |towards, rgb| {
+            number += 1;
+            let way = shot.way(towards);
+            if number % 11 != 0 || towards.y < 0.01 {
+                return;
+            }
+            const PIECES: u32 = 40;
+            let step = way / f64::from(PIECES);
+            let expected: f64 = (0..PIECES)
+                .map(|i| {
+                    let (low, high) = (step * f64::from(i), step * f64::from(i + 1));
+                    let share = rain_core::rainfall::cloud_share(towards.y * 0.5 * (low + high), 700.0, 300.0);
+                    let depth = if uneven {
+                        field.along(towards * low, towards * high, 5.0, |rate| {
+                            extinction_per_m(&spectrum(rate), 2.0)
+                        })
+                    } else {
+                        even * step
+                    };
+                    depth * share
+                })
+                .sum();
+            if expected < 2.0 {
+                let found = -rgb[0].ln();
+                sums[0] += found;
+                sums[1] += expected;
+                thinned += usize::from(way < f64::from(LIMIT_M));
+                if !uneven {
+                    assert!(
+                        (found - expected).abs() < 0.002 * expected + HALF_STEP / rgb[0],
+                        "{found} {expected}"
+                    );
+                }
+            }
+        });
+        let allowed = 0.01 * sums[1] + HALF_STEP * f64::from(number / 11);
+        assert!(
+            thinned > 100 && (sums[0] - sums[1]).abs() < allowed,
+            "{uneven}: {sums:?} {thinned}"
+        );
+    }
 }

@@ -30,6 +30,19 @@ pub fn far_pitch_weight(sine: f64) -> f64 {
     ramp(sine, a, b) * (1.0 - ramp(sine, c, d))
 }
 
+/// Share of the rain at a height over the eye under a cloud whose base is `base_m` over the eye, m: 1 up to `thin_m` below the
+/// base, straight down to 0 at it. A `thin_m` of 0 is a sharp base. Units: none.
+///
+/// Error: 1e-15.
+#[must_use]
+pub fn cloud_share(height_m: f64, base_m: f64, thin_m: f64) -> f64 {
+    if thin_m > 0.0 {
+        clamped((base_m - height_m) / thin_m, 0.0, 1.0)
+    } else {
+        f64::from(u8::from(height_m < base_m))
+    }
+}
+
 /// The rain around an eye.
 #[derive(Debug, Clone, Copy)]
 pub struct FarEye<'a> {
@@ -156,12 +169,12 @@ impl FarAccount {
         }
     }
 
-    /// Optical depth of far rain over its share q along a unit line of sight for `way_m` (m) under a cloud `cloud_m` over the
-    /// eye (m, held from 0 on): what haze leaves out, in double precision. Units: none.
+    /// Optical depth of far rain over its share q along a unit line of sight for `way_m` (m): what haze leaves out, in double
+    /// precision. `cloud_m` and `thin_m`: the cloud's base over the eye (m, held from 0 on), as in [`cloud_share`]. Units: none.
     ///
     /// Error: that of [`FarAccount::per_m`]; 512 points, closer together nearby.
     #[must_use]
-    pub fn far_depth(&self, eye: &FarEye, towards: DVec3, way_m: f64, cloud_m: f64) -> f64 {
+    pub fn far_depth(&self, eye: &FarEye, towards: DVec3, way_m: f64, cloud_m: f64, thin_m: f64) -> f64 {
         const STEPS: usize = 512;
         let flat = towards.xz().length();
         let weight = far_pitch_weight(towards.y);
@@ -181,7 +194,8 @@ impl FarAccount {
                 let (low, high) = (knot(i as f64, scale), knot((i + 1) as f64, scale));
                 let at = direction * (0.5 * (low + high));
                 let rate = eye.areas.rate_at(eye.eye_m.xz() + at, eye.weather_mm_h);
-                self.per_m(at, eye.rates.per_m(rate)) * (high - low)
+                let height = towards.y / flat * 0.5 * (low + high);
+                self.per_m(at, eye.rates.per_m(rate)) * cloud_share(height, cloud_m, thin_m) * (high - low)
             })
             .sum();
         weight * sum / flat

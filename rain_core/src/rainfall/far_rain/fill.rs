@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, IVec3, Vec3, Vec3Swizzles};
 
-use super::account::{FAR_BEGIN_M, FAR_PITCH, FarAccount, FarEye};
+use super::account::{FAR_BEGIN_M, FAR_PITCH, FarAccount, FarEye, cloud_share};
 use super::particle::{FAR_HEIGHT, FAR_OPACITY, FarParticle, far_presence};
 use super::settings::FarRainSettings;
 use crate::error::clamped;
@@ -46,6 +46,8 @@ pub struct FarRainView<'a> {
     pub seed: u64,
     /// The cloud's base over the eye. Units: m.
     pub cloud_m: f64,
+    /// How far below it the rain thins out; see [`cloud_share`](super::cloud_share). Units: m.
+    pub thin_m: f64,
     /// Longest way through the rain. Units: m.
     pub limit_m: f64,
 }
@@ -294,7 +296,8 @@ impl FarRain {
             if !in_sight {
                 continue;
             }
-            let own = self.account.per_m(middle, extinction) * level.weight(distance) * level.per_extinction;
+            let under = cloud_share(centre.y, view.cloud_m, view.thin_m);
+            let own = self.account.per_m(middle, extinction) * level.weight(distance) * level.per_extinction * under;
             self.wanted += own;
             self.cells.push(Cell {
                 at,

@@ -26,7 +26,7 @@ mod fill;
 mod particle;
 mod settings;
 
-pub use account::{FAR_BEGIN_M, FAR_PITCH, FarAccount, FarEye, far_begin, far_pitch_weight};
+pub use account::{FAR_BEGIN_M, FAR_PITCH, FarAccount, FarEye, cloud_share, far_begin, far_pitch_weight};
 pub use fill::{FarRain, FarRainView};
 pub use particle::{FAR_HEIGHT, FAR_OPACITY, FAR_SHADE, FarParticle, far_presence, far_profile};
 pub use settings::{FarRainSettings, MAX_FAR_PARTICLES};

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::account::far_pitch_weight;
+use super::account::{cloud_share, far_pitch_weight};
 use crate::error::{clamped, clamped_f32};
 use crate::ops;
 
@@ -88,13 +88,13 @@ impl FarParticle {
         1.0 + FAR_SHADE as f32 * (2.0 * (turned - turned.floor()) - 1.0)
     }
 
-    /// Opacity where a unit line of sight passes it, less than 1; `axis` is the unit direction it is drawn out along, `cloud_m` the
-    /// cloud's base over the eye (m). Over the sine between sight and axis: a line that runs along the rain is in it for longer.
+    /// Opacity where a unit line of sight passes it, less than 1; `axis` is the unit direction it is drawn out along, `cloud` the
+    /// cloud's base over the eye and how far below it the rain thins out (m). Over the sine between sight and axis: a line that runs along the rain is in it for longer.
     /// Units: none.
     ///
     /// Error: 1e-5; the shader's 1e-3.
     #[must_use]
-    pub fn opacity(&self, towards: Vec3, axis: Vec3, cloud_m: f32) -> f32 {
+    pub fn opacity(&self, towards: Vec3, axis: Vec3, cloud: [f32; 2]) -> f32 {
         let centre = Vec3::from(self.centre);
         let Some((right, normal)) = far_facing(centre, axis) else {
             return 0.0;
@@ -105,14 +105,12 @@ impl FarParticle {
         }
         let way = centre.dot(normal) / head_on;
         let point = towards * way;
-        if point.y > cloud_m {
-            return 0.0;
-        }
+        let under = cloud_share(point.y.into(), cloud[0].into(), cloud[1].into()) as f32;
         let off = point - centre;
         let across = off.dot(right) / self.half_width;
         let along = off.dot(axis) / (self.half_width * FAR_HEIGHT as f32);
         let sine = towards.cross(axis).length().max(0.3);
-        let weight = far_pitch_weight(f64::from(towards.y)) as f32;
+        let weight = far_pitch_weight(f64::from(towards.y)) as f32 * under;
         let shown = FAR_OPACITY as f32 * self.presence * weight / sine * far_profile(across, along, self.phase);
         clamped_f32(shown, 0.0, 0.99)
     }

@@ -18,6 +18,7 @@ use super::{ellipse, field, places, star};
 /// Half the view's angles. Units: rad.
 const HALF: f64 = 0.6;
 const CLOUD_M: f64 = 1000.0;
+const THIN_M: f64 = 400.0;
 
 fn volume(eye_m: DVec3, turn: f64) -> RainViewVolume {
     let rotation = Quat::from_rotation_y(-turn as f32);
@@ -86,6 +87,7 @@ impl<'a> Shot<'a> {
                 motion: &motion.after(self.time_s),
                 seed: self.seed,
                 cloud_m: CLOUD_M,
+                thin_m: THIN_M,
                 limit_m: 20_000.0,
             },
         );
@@ -117,7 +119,7 @@ fn through(rain: &FarRain, towards: DVec3) -> f64 {
     let sight = towards.as_vec3();
     rain.particles
         .iter()
-        .map(|p| 1.0 - f64::from(p.opacity(sight, rain.axis, CLOUD_M as f32)))
+        .map(|p| 1.0 - f64::from(p.opacity(sight, rain.axis, [CLOUD_M as f32, THIN_M as f32])))
         .product()
 }
 
@@ -146,7 +148,7 @@ fn far_particles_and_haze_take_out_the_rains_light_from_2_km_to_the_border() {
                     let towards = DVec3::new(azimuth, pitch, -1.0).normalize();
                     let way = (CLOUD_M / towards.y).min(20_000.0);
                     let whole = areas.along(shot.eye_m, shot.eye_m + towards * way, 0.0, |r| rates.per_m(r));
-                    let far = rain.share * rain.account.far_depth(&shot.eye(&rates), towards, way, CLOUD_M);
+                    let far = rain.share * rain.account.far_depth(&shot.eye(&rates), towards, way, CLOUD_M, THIN_M);
                     assert!(far <= whole + 1e-6, "{far} of {whole}");
                     found += 1.0 - (far - whole).exp() * through(&rain, towards);
                     expected += 1.0 - (-whole).exp();
