@@ -383,7 +383,7 @@ fn far_rain_is_drawn_where_a_shower_is_in_view_from_outside_and_its_curtain_stay
     let mask = with_mask(&mut test);
     let camera = test.camera;
     test.look(Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.0, 2.0, -10.0));
-    let mut draws = |test: &mut TestApp, far: bool| {
+    let draws = |test: &mut TestApp, far: bool| {
         test.world().get_mut::<RainView>(camera).expect("a view").far_rain = Some(far);
         test.frames(3, FRAME);
         test.reset();
@@ -391,7 +391,7 @@ fn far_rain_is_drawn_where_a_shower_is_in_view_from_outside_and_its_curtain_stay
         test.recorded(PassName::FarRain)
     };
     // Mean over the middle of the picture above the horizon, and several moments: particles are few.
-    let mut mean = |test: &mut TestApp| {
+    let mean = |test: &mut TestApp| {
         let mut sum = 0.0;
         for _ in 0..6 {
             test.frames(40, FRAME);
