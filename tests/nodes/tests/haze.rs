@@ -642,11 +642,11 @@ fn rain_thins_out_below_its_cloud() {
         packed: &packed,
         weather_mm_h: 5.0,
     };
-    let even = extinction_per_m(&spectrum(25.0), 2.0);
+    let even = extinction_per_m(&spectrum(2.0), 2.0);
     for uneven in [false, true] {
         let shot = Shot {
             rotation: Quat::from_rotation_x(0.3),
-            rate: if uneven { field.rate_at(DVec2::ZERO, 5.0) } else { 25.0 },
+            rate: if uneven { field.rate_at(DVec2::ZERO, 5.0) } else { 2.0 },
             wall_m: None,
             cloud_m: 700.0,
             thin_m: 300.0,
