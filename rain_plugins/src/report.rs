@@ -22,6 +22,8 @@ pub enum PassName {
     Haze,
     /// Far showers as particles.
     FarRain,
+    /// Rainbows, in the haze's pass.
+    Rainbow,
     /// Streak textures, made once.
     StreakTextures,
     /// Splashes of rain.
@@ -48,6 +50,7 @@ impl PassName {
             Self::Reflection => "reflection",
             Self::Haze => "haze",
             Self::FarRain => "far_rain",
+            Self::Rainbow => "rainbow",
             Self::StreakTextures => "streak_textures",
             Self::Splash => "splash",
             Self::Lattice => "lattice",
@@ -81,6 +84,10 @@ pub enum SkipReason {
     NoView,
     /// Too little to be seen.
     Negligible,
+    /// There is no sun, or its light is 0.
+    NoSun,
+    /// The view shows no haze.
+    NoHaze,
     /// Turned off by a setting.
     Disabled,
     /// The view's projection or sample count is not supported by the pass.
@@ -102,6 +109,8 @@ impl SkipReason {
             Self::NothingMoved => "nothing moved",
             Self::NoView => "no view",
             Self::Negligible => "negligible",
+            Self::NoSun => "no sun",
+            Self::NoHaze => "no haze",
             Self::Disabled => "disabled",
             Self::Unsupported => "unsupported view",
         }

@@ -574,10 +574,16 @@ struct HazeView {
     environment: vec4<f32>,
     // Even light around, exposed.
     ambient: vec4<f32>,
+    // w: how much of the haze is the artists' fog.
     sun_direction: vec4<f32>,
     sun: vec4<f32>,
-    // Where the view looks; w: near plane, m.
+    // Where the view looks; w: 0.
     forward: vec4<f32>,
+    // Row of the projection that makes depth, for places about the eye.
+    depth_row: vec4<f32>,
+    // Mist, 1/m; height of a mirror over the eye, m, 0: none; gain of the rainbow, 0: none; what of the sun's light the
+    // haze shows.
+    air: vec4<f32>,
     // Corner and size of the view in the target, px.
     viewport: vec4<f32>,
     // The artists' fog: colour, times the luminance around; w: how much of its colour it has lost.
@@ -589,9 +595,9 @@ struct HazeView {
     // Base of the cloud over the eye, and the longest way, m.
     cloud: f32,
     limit: f32,
-    // The artists' fog, 1/m; below 0: the physical haze.
+    // The artists' fog, 1/m.
     artist: f32,
-    // 1: the artists' fog has a colour of its own.
+    // How much of the artists' fog has a colour of its own.
     coloured: f32,
     // 1: areas divide the rain.
     uneven: f32,

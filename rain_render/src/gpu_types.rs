@@ -453,6 +453,8 @@ pub struct HazeView {
     pub sun_direction: [f32; 4],
     pub sun: [f32; 4],
     pub forward: [f32; 4],
+    pub depth_row: [f32; 4],
+    pub air: [f32; 4],
     pub viewport: [f32; 4],
     pub fog: [f32; 4],
     pub extinction: f32,
@@ -557,7 +559,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(LensDrop: place, along, radius, stretch, key, pad_a),
         layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
         layout!(HazeLamp: place, light, axis),
-        layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward, viewport, fog,
-            extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, far, drawn, rates, lamp),
+        layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward,
+            depth_row, air, viewport, fog, extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, far, drawn, rates, lamp),
     ]
 }

@@ -2,6 +2,7 @@
 
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
+use rain_core::haze::{DRY_EXTINCTION_PER_M, HYGROSCOPICITY};
 use rain_core::rainfall::FarRainSettings;
 use rain_render::haze::MAX_HAZE_LAMPS;
 
@@ -36,6 +37,40 @@ pub struct HazeSettings {
     /// How much of it is drawn as far rain where [`RainView::far_rain`](crate::rainfall::RainView::far_rain) is on.
     #[reflect(ignore)]
     pub far_rain: FarRainSettings,
+    /// Haze of the air itself, which grows into mist and fog with the weather's humidity, with or without rain. Default:
+    /// none.
+    pub mist: Option<Mist>,
+}
+
+/// Particles in the air that take up water (Petters & Kreidenweis 2007): haze in dry air, mist near saturation, fog at it.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default)]
+pub struct Mist {
+    /// Extinction of the dry particles. Units: 1/m. Domain: [0, 1]. Default: 0.0001, clean country air.
+    pub dry_per_m: f32,
+    /// Hygroscopicity κ. Units: none. Domain: [0, 2]. Default: 0.3, mixed particles over land; sea salt has 1.2.
+    pub hygroscopicity: f32,
+}
+
+impl Default for Mist {
+    fn default() -> Self {
+        Self {
+            dry_per_m: DRY_EXTINCTION_PER_M as f32,
+            hygroscopicity: HYGROSCOPICITY as f32,
+        }
+    }
+}
+
+/// The open sky that lights a view's haze, where the camera's [`EnvironmentMapLight`](bevy::light::EnvironmentMapLight)
+/// holds what stands about it: rain far away stands under the sky, not among the houses near the eye. Without it haze takes
+/// the camera's map.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component)]
+pub struct HazeSky {
+    /// Prefiltered cube map, as of an `EnvironmentMapLight`.
+    pub specular_map: Handle<Image>,
+    /// Its scale to luminance. Units: cd/m².
+    pub intensity: f32,
 }
 
 /// Fog the artists' way (Lagarde 2013): denser in heavier rain, losing its colour as the rain sets in. Nothing physical.
@@ -78,6 +113,7 @@ impl Default for HazeSettings {
             glow: 1.0,
             artist: None,
             far_rain: FarRainSettings::default(),
+            mist: None,
         }
     }
 }
@@ -97,14 +133,29 @@ impl HazeSettings {
         in_range("glow", self.glow.into(), 0.0, 100.0, "0 to 100")?;
         self.far_rain.validated()?;
         if let Some(fog) = self.artist {
-            in_range("density_per_m", fog.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
-            in_range("gain", fog.gain.into(), 0.0, 1e3, "0 to 1000")?;
-            in_range("desaturation", fog.desaturation.into(), 0.0, 1.0, "0 to 1")?;
-            in_range("transition_s", fog.transition_s.into(), 0.0, 1e6, "0 to 1e6 s")?;
-            let colour = fog.colour.unwrap_or(LinearRgba::BLACK);
-            for value in [colour.red, colour.green, colour.blue] {
-                in_range("colour", value.into(), 0.0, 1e4, "0 to 1e4")?;
-            }
+            fog.validated()?;
+        }
+        if let Some(mist) = self.mist {
+            in_range("dry_per_m", mist.dry_per_m.into(), 0.0, 1.0, "0 to 1 per m")?;
+            in_range("hygroscopicity", mist.hygroscopicity.into(), 0.0, 2.0, "0 to 2")?;
+        }
+        Ok(self)
+    }
+}
+
+impl ArtistFog {
+    /// These settings, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        in_range("density_per_m", self.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
+        in_range("gain", self.gain.into(), 0.0, 1e3, "0 to 1000")?;
+        in_range("desaturation", self.desaturation.into(), 0.0, 1.0, "0 to 1")?;
+        in_range("transition_s", self.transition_s.into(), 0.0, 1e6, "0 to 1e6 s")?;
+        let colour = self.colour.unwrap_or(LinearRgba::BLACK);
+        for value in [colour.red, colour.green, colour.blue] {
+            in_range("colour", value.into(), 0.0, 1e4, "0 to 1e4")?;
         }
         Ok(self)
     }

@@ -13,7 +13,8 @@ use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::far_rain::{FarRainGpu, FarRainInput, FarRainViewGpu, encode_far_rain, encode_far_rain_coverage};
 
-use super::extract::{ExtractedRainScene, ExtractedRainView};
+use super::extract::ExtractedRainScene;
+use super::haze::ExtractedHazeView;
 use super::prepare::view_lighting;
 use super::record::{draw_within, over_scene};
 use crate::haze::{FarRainShot, FarRainViewFrame, HazeMask};
@@ -77,7 +78,7 @@ pub(super) fn prepare_far_rain(
         &ExtractedView,
         &ExtractedCamera,
         &ExtractedFarView,
-        &ExtractedRainView,
+        &ExtractedHazeView,
         &Msaa,
     )>,
 ) {
@@ -85,8 +86,8 @@ pub(super) fn prepare_far_rain(
     let far = &mut *far;
     let device = device.wgpu_device();
     far.views.retain(|entity, _| views.contains(*entity));
-    for (entity, view, camera, seen, rain, msaa) in &views {
-        let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
+    for (entity, view, camera, seen, haze, msaa) in &views {
+        let environment = haze.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         far.gpu
             .prepare_pipelines(device, view.target_format, msaa.samples(), seen.mask.is_some());
         let rotation = view.world_from_view.rotation();

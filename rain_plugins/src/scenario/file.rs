@@ -461,6 +461,9 @@ pub struct RainSettings {
     pub cloud_base_m: f64,
     /// Gain on the glow of lamps in the haze. Units: none. Domain: [0, 100]; 1 is physical. Default: 1.
     pub glow: f64,
+    /// Gain on the light of rainbows, which a sun behind the eye makes in the haze. Units: none. Domain: [0, 100]; 1 is
+    /// physical, 0 none. Default: 0.
+    pub rainbow: f64,
     /// Whether rain beyond the single drops is drawn, as cards of many. Default: on a GPU, not on a software adapter.
     pub cards: Option<bool>,
     /// Whether showers seen from outside are drawn as particles over their haze. Default: on a GPU, not on a software adapter.
@@ -505,6 +508,7 @@ impl Default for RainSettings {
             haze: true,
             cloud_base_m: 1000.0,
             glow: 1.0,
+            rainbow: 0.0,
             cards: None,
             far_rain: None,
             lens: Lens::Off,

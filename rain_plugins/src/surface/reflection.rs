@@ -11,6 +11,7 @@ use rain_render::reflection::MAX_MIRRORS;
 use super::state::SurfaceState;
 use super::water::{WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::AirAroundView;
+use crate::haze::{HazeSky, HazeViewFrame};
 use crate::rainfall::RainView;
 use crate::render_adapter::{WetMaterial, mirror_camera, reflection_image, reflection_target};
 use crate::report::{PassName, RainReport, SkipReason};
@@ -47,14 +48,16 @@ pub struct RainMirrorView {
 /// A view in its mirror.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorView {
-    /// The eye that it belongs to. Units: m, world.
+    /// The camera that it belongs to.
+    pub of: Entity,
+    /// Its eye. Units: m, world.
     pub eye: Vec3,
     /// Where that looks: another view may look elsewhere from the same place.
     pub forward: Vec3,
     /// Of the mirror. Units: m, world.
     pub height: f32,
     /// Its image under the plane.
-    mirrored_eye: Vec3,
+    pub(crate) mirrored_eye: Vec3,
     /// Places relative to the mirrored eye to its clip space: without the world's large numbers.
     clip_from_mirrored_eye: Mat4,
 }
@@ -107,6 +110,7 @@ pub(super) struct Mirrored {
     reflection: &'static PlanarReflection,
     exposure: Option<&'static Exposure>,
     environment: Option<&'static EnvironmentMapLight>,
+    open_sky: Option<&'static HazeSky>,
     sky: Option<&'static Skybox>,
     fog: Option<&'static DistanceFog>,
     layers: Option<&'static RenderLayers>,
@@ -182,6 +186,7 @@ fn aim(
     let turned = Mat4::from_mat3(Mat3::from_quat(transform.rotation) * Mat3::from_diagonal(transform.scale));
     Ok(Aim {
         view: MirrorView {
+            of: view.entity,
             eye,
             forward: view.transform.forward().into(),
             height,
@@ -274,7 +279,8 @@ pub(super) fn aim_mirrors(
                 })*
             };
         }
-        follow!(exposure: Exposure, environment: EnvironmentMapLight, sky: Skybox, fog: DistanceFog, layers: RenderLayers);
+        follow!(exposure: Exposure, environment: EnvironmentMapLight, open_sky: HazeSky, sky: Skybox);
+        follow!(fog: DistanceFog, layers: RenderLayers);
     }
     for (layer, aim) in (0..).zip(aims) {
         let Some(aim) = aim.filter(|_| !spawned[layer as usize]) else {
@@ -284,6 +290,7 @@ pub(super) fn aim_mirrors(
         commands.spawn((
             RainMirrorView { layer },
             mirror_camera(target),
+            HazeViewFrame::default(),
             aim.transform,
             Projection::custom(aim.projection),
         ));

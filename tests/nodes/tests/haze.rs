@@ -2,12 +2,14 @@
 
 use glam::{DVec2, DVec3, Mat4, Quat, Vec3, Vec4};
 use rain_core::haze::{
-    FogTable, HazeSharing, LUMA_LINEAR, RateExtinction, cone_span_m, desaturated, extinction_per_m, lamp_glow_per_m,
+    FogTable, HazeSharing, LUMA_LINEAR, RateExtinction, cone_span_m, desaturated, drop_phase_per_sr, extinction_per_m,
+    lamp_glow_per_m,
 };
+use rain_core::optics::RainbowTables;
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32, AreaRain, AreaSettings, AreaShape};
 use rain_core::rainfall::{CLASS_COUNT, Distribution, FarAccount, FarEye, Lamp, Spectrum};
 use rain_render::haze::{
-    HazeAreas, HazeFar, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    HazeAreas, HazeBow, HazeFar, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
 };
 use rain_render::rainfall::{DEPTH_FORMAT, Lighting};
 
@@ -37,11 +39,17 @@ struct Shot<'a> {
     cloud_m: f32,
     thin_m: f32,
     fog: Option<HazeFog>,
+    mist_per_m: f32,
+    bow: Option<HazeBow<'a>>,
+    /// Where it stands, and its illuminance.
+    sun: [Vec3; 2],
     lamps: &'a [Lamp],
     ambient: Vec3,
     background: [f64; 3],
     /// Distance of a wall across the view; none: sky.
     wall_m: Option<f32>,
+    /// Height of a mirror over the eye, in whose picture nothing nearer is drawn.
+    mirror_m: Option<f32>,
     samples: u32,
 }
 
@@ -56,10 +64,14 @@ impl Default for Shot<'_> {
             cloud_m: 1000.0,
             thin_m: 0.0,
             fog: None,
+            mist_per_m: 0.0,
+            bow: None,
+            sun: [Vec3::Y, Vec3::ZERO],
             lamps: &[],
             ambient: Vec3::ZERO,
             background: [1.0; 3],
             wall_m: Some(100.0),
+            mirror_m: None,
             samples: 1,
         }
     }
@@ -76,6 +88,42 @@ impl Shot<'_> {
         (self.rotation.as_dquat() * ahead).normalize()
     }
 
+    /// Clip from view.
+    fn projection(&self) -> Mat4 {
+        let f = 1.0 / HALF;
+        let mut projection = Mat4::from_cols(
+            Vec4::new(f, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, f, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, 0.0, -1.0),
+            Vec4::new(0.0, 0.0, NEAR_M, 0.0),
+        );
+        if let Some(height) = self.mirror_m {
+            // The near plane is the mirror: the third row after Lengyel 2005, as Bevy has it.
+            let plane = (self.rotation.inverse() * Vec3::Y).extend(-height);
+            let corner = projection.inverse() * Vec4::new(plane.x.signum(), plane.y.signum(), 0.0, 1.0);
+            let row = Vec4::NEG_Z - plane * (-corner.z / plane.dot(corner));
+            projection.x_axis.z = row.x;
+            projection.y_axis.z = row.y;
+            projection.z_axis.z = row.z;
+            projection.w_axis.z = row.w;
+        }
+        projection
+    }
+
+    /// How far a line of sight goes in a picture whose near plane is a mirror. Units: m.
+    fn mirrored_way(&self, towards: DVec3) -> f64 {
+        let clip_from_eye = self.projection().as_dmat4() * glam::DMat4::from_quat(self.rotation.inverse().as_dquat());
+        let clip = clip_from_eye * towards.extend(0.0);
+        let depth = self.wall_m.map_or(0.0, |wall| f64::from(NEAR_M / wall));
+        let place = clip_from_eye.inverse() * glam::DVec4::new(clip.x / clip.w, clip.y / clip.w, depth, 1.0);
+        let way = if place.w > 0.0 {
+            (place.truncate() / place.w).length()
+        } else {
+            f64::INFINITY
+        };
+        way.min(f64::from(self.cloud_m) / towards.y).min(LIMIT_M.into())
+    }
+
     /// How far that reaches under the cloud. Units: m.
     fn way(&self, towards: DVec3) -> f64 {
         let ahead = towards.dot(self.rotation.as_dquat() * DVec3::NEG_Z);
@@ -89,13 +137,7 @@ impl Shot<'_> {
     }
 
     fn take(&self, gpu: &Device) -> Vec<[f32; 4]> {
-        let f = 1.0 / HALF;
-        let projection = Mat4::from_cols(
-            Vec4::new(f, 0.0, 0.0, 0.0),
-            Vec4::new(0.0, f, 0.0, 0.0),
-            Vec4::new(0.0, 0.0, 0.0, -1.0),
-            Vec4::new(0.0, 0.0, NEAR_M, 0.0),
-        );
+        let projection = self.projection();
         let texture = |format, samples, more: wgpu::TextureUsages| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
@@ -118,14 +160,13 @@ impl Shot<'_> {
         let input = HazeInput {
             clip_from_eye: projection * Mat4::from_quat(self.rotation.inverse()),
             forward: self.rotation * Vec3::NEG_Z,
-            near_m: NEAR_M,
             viewport_px: Vec4::new(0.0, 0.0, SIDE as f32, SIDE as f32),
             lighting: Lighting {
                 environment_scale: 0.0,
                 environment_max_level: 0.0,
                 ambient: self.ambient,
-                sun_direction: Vec3::Y,
-                sun: Vec3::ZERO,
+                sun_direction: self.sun[0],
+                sun: self.sun[1],
             },
             extinction_per_m: extinction_per_m(&spectrum(self.rate), 2.0) as f32,
             efficiency: 2.0,
@@ -137,6 +178,9 @@ impl Shot<'_> {
             thin_m: self.thin_m,
             limit_m: LIMIT_M,
             fog: self.fog,
+            mist_per_m: self.mist_per_m,
+            mirror_m: self.mirror_m,
+            bow: self.bow,
             lamps: self.lamps,
         };
         let mut haze = HazeGpu::new(&gpu.device);
@@ -309,8 +353,10 @@ fn the_artists_fog_has_its_own_density_and_loses_its_colour() {
             background: [0.0; 3],
             fog: Some(HazeFog {
                 density_per_m: 0.004,
-                colour: Some(Vec3::new(0.2, 0.5, 0.9)),
+                colour: Vec3::new(0.2, 0.5, 0.9),
+                coloured: 1.0,
                 desaturation,
+                share: 1.0,
             }),
             ..Shot::default()
         };
@@ -694,5 +740,132 @@ fn rain_thins_out_below_its_cloud() {
             thinned > 100 && (sums[0] - sums[1]).abs() < allowed,
             "{uneven}: {sums:?} {thinned}"
         );
+    }
+}
+
+#[test]
+fn the_bow_in_the_haze_is_its_light_over_the_rain_in_sight() {
+    let Some(gpu) = device() else { return };
+    let tables = RainbowTables::new();
+    let bow = tables.of_rain(&spectrum(25.0));
+    let sun = [Vec3::new(0.1, 0.3, 1.0).normalize(), Vec3::new(40.0, 30.0, 20.0)];
+    let geometric = extinction_per_m(&spectrum(25.0), 1.0);
+    let mut greatest = [0.0_f64; 2];
+    for (pitch, strength, wall) in [
+        (0.3, 1.0, Some(3000.0)),
+        (0.3, 2.5, Some(500.0)),
+        (-0.2, 1.0, None),
+        (0.3, 0.0, None),
+    ] {
+        let shot = Shot {
+            rotation: Quat::from_rotation_x(pitch),
+            wall_m: wall,
+            background: [0.0; 3],
+            sun,
+            bow: Some(HazeBow { phase: &bow, strength }),
+            ..Shot::default()
+        };
+        shot.each(&gpu, |towards, rgb| {
+            let depth = geometric * shot.way(towards);
+            let angle = towards.angle_between(-sun[0].as_dvec3());
+            let turned = drop_phase_per_sr(std::f64::consts::PI - angle) / 2.0 * -(-2.0 * depth).exp_m1();
+            let share = -0.5 * f64::from(strength) * (-2.0 * depth).exp_m1();
+            let light = bow.per_sr(angle);
+            for (c, found) in rgb.into_iter().enumerate() {
+                let expected = f64::from(sun[1][c]) * (turned + share * light[c]);
+                // Half floats, and an angle to 1e-6 on slopes of 0.1 in 0.1 degrees.
+                let allowed = 2.0 * HALF_STEP * expected + 2e-3 * f64::from(sun[1][c]) * 0.1;
+                assert!((found - expected).abs() < allowed, "{towards}: {found} {expected}");
+                greatest[usize::from(strength > 0.0)] = greatest[usize::from(strength > 0.0)].max(found);
+            }
+        });
+    }
+    assert!(greatest[1] > 2.0 * greatest[0] && greatest[0] > 0.0, "{greatest:?}");
+}
+
+#[test]
+fn a_mirrored_view_has_the_haze_beyond_its_mirror_however_the_near_plane_lies() {
+    let Some(gpu) = device() else { return };
+    let extinction = extinction_per_m(&spectrum(25.0), 2.0);
+    // What is drawn at eight tenths of the depth of the mirror itself, and the sky.
+    for wall in [Some(0.125), None] {
+        let shot = Shot {
+            rotation: Quat::from_rotation_y(0.4) * Quat::from_rotation_x(0.3),
+            mirror_m: Some(20.0),
+            wall_m: wall,
+            ..Shot::default()
+        };
+        let mut seen = 0;
+        shot.each(&gpu, |towards, rgb| {
+            // The mirror itself, and what lies beneath it, is not drawn.
+            let to_mirror = 20.0 / towards.y;
+            let way = shot.mirrored_way(towards);
+            if towards.y < 0.01 || to_mirror > way {
+                return;
+            }
+            let expected = (-extinction * (way - to_mirror)).exp();
+            assert!(
+                (rgb[0] - expected).abs() < 2.0 * HALF_STEP,
+                "{towards}: {} {expected}",
+                rgb[0]
+            );
+            seen += 1;
+        });
+        assert!(seen > 2000, "{seen}");
+    }
+}
+
+#[test]
+fn mist_is_everywhere_under_the_cloud_and_adds_to_the_rain() {
+    let Some(gpu) = device() else { return };
+    for rate in [0.0, 25.0] {
+        let shot = Shot {
+            rate,
+            mist_per_m: 0.003,
+            wall_m: Some(300.0),
+            ..Shot::default()
+        };
+        let extinction = 0.003
+            + if rate > 0.0 {
+                extinction_per_m(&spectrum(rate), 2.0)
+            } else {
+                0.0
+            };
+        shot.each(&gpu, |towards, rgb| {
+            let expected = (-extinction * shot.way(towards)).exp();
+            assert!(
+                (rgb[0] - expected).abs() < 2.0 * HALF_STEP,
+                "{rate}: {} {expected}",
+                rgb[0]
+            );
+        });
+    }
+}
+
+#[test]
+fn half_of_the_artists_fog_is_half_of_the_rains_haze() {
+    let Some(gpu) = device() else { return };
+    for share in [0.0_f32, 0.5, 1.0] {
+        let shot = Shot {
+            background: [1.0; 3],
+            fog: Some(HazeFog {
+                density_per_m: 0.02,
+                colour: Vec3::ZERO,
+                coloured: 1.0,
+                desaturation: 0.0,
+                share,
+            }),
+            ..Shot::default()
+        };
+        let rain = extinction_per_m(&spectrum(25.0), 2.0);
+        shot.each(&gpu, |towards, rgb| {
+            let [rain, fog] = [rain, 0.02].map(|extinction| (-extinction * shot.way(towards)).exp());
+            let expected = rain + (fog - rain) * f64::from(share);
+            assert!(
+                (rgb[0] - expected).abs() < 2.0 * HALF_STEP,
+                "{share}: {} {expected}",
+                rgb[0]
+            );
+        });
     }
 }

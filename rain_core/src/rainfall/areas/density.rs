@@ -148,7 +148,7 @@ impl DensityMap {
 
     /// The share at a place relative to the centre (x, z, m). Units: none. In [0, 1].
     ///
-    /// Error: 1e-15.
+    /// Error: 1e-13, that of the place in cells.
     #[must_use]
     pub fn at(&self, local_m: DVec2) -> f64 {
         let ([[a, b], [c, d]], t) = self.around(local_m);

@@ -46,8 +46,8 @@ impl PlacedArea {
     /// at the point of the outline nearest to the eye, its flat side to the eye; where the eye is inside, at the eye, facing
     /// where it looks. None where the area is unbounded or nothing of it is between the picture's sides.
     ///
-    /// Error: no rain of the area in sight is outside the container; its sides are at most 0.2 % of the area's size further
-    /// out than a convex outline with its soft edge.
+    /// Error: 1e-6 m: no rain of the area in sight is further outside the container; its sides may be 0.2 % of the area's size
+    /// further out than a convex outline with its soft edge.
     #[must_use]
     pub fn far_container(&self, view: &FarView) -> Option<FarFit> {
         let ahead = view.ahead.try_normalize()?;
@@ -131,7 +131,7 @@ impl AreaField {
     /// How much of a view's rain is near rain: 1 well inside a shower, 0 well outside all, half on an outline, over the width
     /// of the soft edge and no less than 40 m; what is left is far rain. An unbounded shower has everybody inside. Units: none.
     ///
-    /// Error: that of [`border_weight`] at [`PlacedArea::distance_m`].
+    /// Error: 1e-12, that of the distance over the width.
     #[must_use]
     pub fn near_share_at(&self, place_m: DVec2) -> f64 {
         self.areas()

@@ -75,6 +75,7 @@ fn a_painted_density_multiplies_the_rain_of_its_area_in_both_precisions() {
             assert!(with.pack(DVec2::new(5.0, 5.0), 1e4, &mut packed));
             for p in places(800) {
                 let share = slow(&map, p - DVec2::new(12.0, -7.0));
+                assert!((map.at(p - DVec2::new(12.0, -7.0)) - share).abs() < 1e-13);
                 let plain = without.rate_at(p, weather);
                 let expected = if let AreaRain::Scale(_) = rain {
                     weather - (weather - plain) * share
