@@ -20,6 +20,8 @@ pub enum PassName {
     Reflection,
     /// Haze of rain.
     Haze,
+    /// Far showers as particles.
+    FarRain,
     /// Rainbows, in the haze's pass.
     Rainbow,
     /// Streak textures, made once.
@@ -47,6 +49,7 @@ impl PassName {
             Self::Waves => "waves",
             Self::Reflection => "reflection",
             Self::Haze => "haze",
+            Self::FarRain => "far_rain",
             Self::Rainbow => "rainbow",
             Self::StreakTextures => "streak_textures",
             Self::Splash => "splash",
@@ -144,6 +147,8 @@ pub struct Report {
     /// Crowns and thrown drops that the GPU drew in the latest frames that drew splashes, at most [`KEPT_FRAMES`] of them. A
     /// frame's count comes back a frame or two later.
     pub splashes: VecDeque<u32>,
+    /// Particles of far rain in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
+    pub far_rain: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
     pub gpu_memory_bytes: usize,
 }
@@ -183,6 +188,11 @@ impl RainReport {
     /// Notes how many crowns and thrown drops a frame drew.
     pub fn splashes(&self, count: u32) {
         keep(&mut self.lock().splashes, count);
+    }
+
+    /// Notes how many particles of far rain a frame drew.
+    pub fn far_rain(&self, count: u32) {
+        keep(&mut self.lock().far_rain, count);
     }
 
     /// Notes the GPU memory in use.

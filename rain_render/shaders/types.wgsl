@@ -453,6 +453,37 @@ struct SplashFoot {
     key: vec4<u32>,
 }
 
+// A view of far rain.
+struct FarRainParams {
+    // Eye-relative world to clip.
+    clip_from_eye: mat4x4<f32>,
+    // Radiance scale of the environment map; w: its highest mip level.
+    environment: vec4<f32>,
+    // Uniform surrounding radiance; w unused.
+    ambient: vec4<f32>,
+    // Direction towards the sun; w unused.
+    sun_direction: vec4<f32>,
+    // Illuminance of the sun, exposed; w unused.
+    sun: vec4<f32>,
+    // Unit direction that particles are drawn out along; w unused.
+    axis: vec4<f32>,
+    // Base of the cloud over the eye, and how far below it rain thins out, m.
+    cloud: f32,
+    thin: f32,
+    pad_b: f32,
+    pad_c: f32,
+}
+
+// A particle of far rain; see `FarParticle` in rain_core. Relative to the eye.
+struct FarParticle {
+    centre: vec3<f32>,
+    presence: f32,
+    half_width: f32,
+    phase: f32,
+    rank: f32,
+    level: f32,
+}
+
 // A view of splashes. Positions are relative to the eye.
 struct SplashView {
     // Eye-relative world to clip, at the end of the exposure.
@@ -598,6 +629,9 @@ struct HazeView {
     lamps: u32,
     // Areas' grid: first azimuth and step, rad; scale of its knots; knots of rates for each unit of ln.
     grid: vec4<f32>,
+    // Far rain, which is drawn as particles: its share of what may be; extinction of the rain outside areas, 1/m. z: how far
+    // below the cloud's base rain thins out, m.
+    far: vec4<f32>,
     // Metres of rain that what is drawn stands for, by distance.
     drawn: array<vec4<f32>, 16>,
     // ln of the extinction, 1/m, by rate.

@@ -369,6 +369,22 @@ pub struct SplashFoot {
     pub key: [u32; 4],
 }
 
+/// A view of far rain.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct FarRainParams {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub axis: [f32; 4],
+    pub cloud: f32,
+    pub thin: f32,
+    pub pad_b: f32,
+    pub pad_c: f32,
+}
+
 /// A view of splashes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -475,6 +491,7 @@ pub struct HazeView {
     pub uneven: f32,
     pub lamps: u32,
     pub grid: [f32; 4],
+    pub far: [f32; 4],
     pub drawn: [[f32; 4]; 16],
     pub rates: [[f32; 4]; 16],
     pub lamp: [HazeLamp; 16],
@@ -524,7 +541,7 @@ macro_rules! layout {
 /// The layouts of every struct of this file.
 #[must_use]
 pub fn layouts() -> Vec<Layout> {
-    use rain_core::rainfall::{Card, DropRecord, TileDrop};
+    use rain_core::rainfall::{Card, DropRecord, FarParticle, TileDrop};
     vec![
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
@@ -557,6 +574,8 @@ pub fn layouts() -> Vec<Layout> {
         layout!(LampParams: place, intensity, direction, limits),
         layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
             lamps, panes, pad_b, pad_c, cover, lamp, pane),
+        layout!(FarRainParams: clip_from_eye, environment, ambient, sun_direction, sun, axis, cloud, thin, pad_b, pad_c),
+        layout!(FarParticle: centre, presence, half_width, phase, rank, level),
         layout!(Card: centre, facing, turn, place, layers),
         layout!(SplashView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, planes, wind,
             stream, viewport, fraction, cell, focal, near, exposure, contrast, soft, reach, near_reach, film, since, span,
@@ -569,6 +588,6 @@ pub fn layouts() -> Vec<Layout> {
         layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
         layout!(HazeLamp: place, light, axis),
         layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward,
-            depth_row, air, viewport, fog, extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, drawn, rates, lamp),
+            depth_row, air, viewport, fog, extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, far, drawn, rates, lamp),
     ]
 }

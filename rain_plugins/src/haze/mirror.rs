@@ -17,6 +17,8 @@ fn mirrored(shot: &HazeShot, height_m: f32, eye: Vec3, image: Vec3) -> HazeShot 
     HazeShot {
         forward: shot.forward * Vec3::new(1.0, -1.0, 1.0),
         drawn_m: [0.0; FOG_TABLE_KNOTS],
+        // No mirror shows particles: all of it is haze.
+        far: None,
         cloud_m: shot.cloud_m + eye.y - image.y,
         lamps: shot.lamps.iter().map(seen).collect(),
         mirror_m: Some(height_m - image.y),

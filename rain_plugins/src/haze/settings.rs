@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::haze::{DRY_EXTINCTION_PER_M, HYGROSCOPICITY};
+use rain_core::rainfall::FarRainSettings;
 use rain_render::haze::MAX_HAZE_LAMPS;
 
 /// Longest accepted way through the rain. Units: m.
@@ -19,6 +20,9 @@ pub struct HazeSettings {
     pub efficiency: f32,
     /// Height (world Y) that rain falls from; there is no haze above. Units: m. Domain: ±10⁵. Default: 1000.
     pub cloud_base_m: f32,
+    /// Rain thins out below that height, over this share of what the base is over the eye: bases hang down in showers, and a
+    /// curtain seen from afar has no edge. Units: none. Domain: [0, 1]. Default: 0.4, by eye; 0: a level base.
+    pub cloud_softness: f32,
     /// Longest way through the rain; sky and what lies further away get the haze of this. Units: m. Domain: [10, 10⁵].
     /// Default: 20 000.
     pub limit_m: f32,
@@ -30,6 +34,9 @@ pub struct HazeSettings {
     pub glow: f32,
     /// Fog as an artist sets it, in place of the rain's. Default: none.
     pub artist: Option<ArtistFog>,
+    /// How much of it is drawn as far rain where [`RainView::far_rain`](crate::rainfall::RainView::far_rain) is on.
+    #[reflect(ignore)]
+    pub far_rain: FarRainSettings,
     /// Haze of the air itself, which grows into mist and fog with the weather's humidity, with or without rain. Default:
     /// none.
     pub mist: Option<Mist>,
@@ -100,10 +107,12 @@ impl Default for HazeSettings {
             enabled: true,
             efficiency: 2.0,
             cloud_base_m: 1000.0,
+            cloud_softness: 0.4,
             limit_m: 20_000.0,
             lamps: MAX_HAZE_LAMPS as u32,
             glow: 1.0,
             artist: None,
+            far_rain: FarRainSettings::default(),
             mist: None,
         }
     }
@@ -117,10 +126,12 @@ impl HazeSettings {
     pub fn validated(self) -> Result<Self, ConfigError> {
         in_range("efficiency", self.efficiency.into(), 1.0, 4.0, "1 to 4")?;
         in_range("cloud_base_m", self.cloud_base_m.into(), -1e5, 1e5, "-1e5 to 1e5 m")?;
+        in_range("cloud_softness", self.cloud_softness.into(), 0.0, 1.0, "0 to 1")?;
         let furthest = f64::from(MAX_HAZE_LIMIT_M);
         in_range("limit_m", self.limit_m.into(), 10.0, furthest, "10 to 1e5 m")?;
         in_range("lamps", self.lamps.into(), 0.0, MAX_HAZE_LAMPS as f64, "0 to 16")?;
         in_range("glow", self.glow.into(), 0.0, 100.0, "0 to 100")?;
+        self.far_rain.validated()?;
         if let Some(fog) = self.artist {
             fog.validated()?;
         }

@@ -10,17 +10,20 @@ use rain_core::haze::{
 };
 use rain_core::optics::RainbowPhase;
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32};
-use rain_core::rainfall::{DrawRange, Lamp, Spectrum};
+use rain_core::rainfall::{DrawRange, FarEye, FarRainSettings, FarRainView, Lamp, Spectrum};
 use rain_core::weather::relative_intensity;
 use rain_ecs::prelude::*;
-use rain_render::haze::HazeFog;
+use rain_render::haze::{HazeFar, HazeFog};
 
 use super::area_fog::{AreaFog, AreaFogs};
+use super::far_rain::{FarRainViewFrame, half_view_rad};
 use super::lamps::glowing;
 use super::mirror::haze_mirrors;
 use super::settings::{HazeSettings, HazeSky};
 use crate::cover::AirAroundView;
-use crate::rainfall::{CardViewFrame, RainView, RainViewFrame, SceneLamps, fill_cards};
+use crate::rainfall::{
+    CardViewFrame, RainView, RainViewFrame, SceneLamps, SoftwareAdapter, ViewMotion, fill_cards, view_volume,
+};
 use crate::render_adapter::let_depth_be_read;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -46,7 +49,10 @@ pub(crate) struct HazeShot {
     pub rates: Arc<RateExtinction>,
     /// Areas packed about the eye, and the weather's rate.
     pub areas: Option<(Arc<AreaFieldF32>, f32)>,
+    /// What is drawn of it as far rain.
+    pub far: Option<HazeFar>,
     pub cloud_m: f32,
+    pub thin_m: f32,
     pub limit_m: f32,
     pub fog: Option<HazeFog>,
     pub lamps: Vec<Lamp>,
@@ -172,6 +178,7 @@ impl Plugin for HazePlugin {
             );
         app.register_required_components::<RainView, HazeSettings>();
         app.register_required_components::<RainView, HazeViewFrame>();
+        app.register_required_components::<RainView, FarRainViewFrame>();
     }
 }
 
@@ -180,6 +187,7 @@ pub(crate) fn aim_haze(
     field: Res<RainfallField>,
     report: Res<RainReport>,
     air: Res<AirAroundView>,
+    (seed, software): (Res<RainSeed>, Res<SoftwareAdapter>),
     areas: Option<Res<RainAreas>>,
     mut local: Local<AreaField>,
     mut errors: MessageWriter<RainConfigError>,
@@ -192,8 +200,9 @@ pub(crate) fn aim_haze(
         &mut Camera3d,
         &Projection,
         &GlobalTransform,
-        &RainViewFrame,
+        (&RainViewFrame, &ViewMotion),
         &mut HazeViewFrame,
+        &mut FarRainViewFrame,
     )>,
 ) {
     errors.write_batch(fogs.faults(areas.as_deref()));
@@ -204,10 +213,21 @@ pub(crate) fn aim_haze(
         areas.field_after(since_tick, &mut local);
     }
     let mut any = false;
-    for ((entity, view, settings, cards), camera, mut camera_3d, projection, transform, rain, mut frame) in &mut views {
+    for (
+        (entity, view, settings, cards),
+        camera,
+        mut camera_3d,
+        projection,
+        transform,
+        (rain, motion),
+        mut frame,
+        mut far_frame,
+    ) in &mut views
+    {
         any = true;
         let frame = &mut *frame;
         frame.shot = None;
+        far_frame.clear();
         if settings.is_changed() {
             match settings.validated() {
                 Ok(good) => frame.settings = good,
@@ -262,6 +282,7 @@ pub(crate) fn aim_haze(
         };
         if let Some(reason) = skip {
             report.skipped(PassName::Haze, reason);
+            report.skipped(PassName::FarRain, reason);
             continue;
         }
         let_depth_be_read(&mut camera_3d);
@@ -286,14 +307,61 @@ pub(crate) fn aim_haze(
             }
             (Arc::new(packed), areas.weather_mm_h() as f32)
         });
+        let rates = frame.rates(&field, settings.efficiency);
+        let cloud_m = settings.cloud_base_m - eye.y;
+        let thin_m = settings.cloud_softness * cloud_m.max(0.0);
+        // What particles show is taken off the physical haze alone.
+        let physical = 1.0 - fog.as_ref().map_or(0.0, |mix| f64::from(mix.fog.share));
+        let far_rain = FarRainSettings {
+            share: settings.far_rain.share * physical.max(0.0),
+            ..settings.far_rain
+        };
+        let far = if !view.draws_far_rain(*software) {
+            Err(SkipReason::Disabled)
+        } else if let Some(areas) = areas {
+            let clip_from_view = projection.get_clip_from_view();
+            far_frame.fill(
+                &far_rain,
+                &FarRainView {
+                    eye: FarEye {
+                        eye_m: eye.as_dvec3(),
+                        areas: &local,
+                        weather_mm_h: areas.weather_mm_h(),
+                        rates: &rates,
+                    },
+                    volume: &view_volume(clip_from_view, size, transform, motion, view.exposure_s),
+                    forward: transform.forward().as_dvec3(),
+                    half_view_rad: half_view_rad(clip_from_view, transform.rotation()),
+                    motion: &field.motion_after(since_tick),
+                    seed: seed.0,
+                    cloud_m: cloud_m.into(),
+                    thin_m: thin_m.into(),
+                    limit_m: limit,
+                },
+            )
+        } else {
+            Err(SkipReason::NoRain)
+        };
+        let far = match far {
+            Ok(rain) => Some(HazeFar {
+                share: rain.share as f32,
+                outside_per_m: rain.account.outside_per_m() as f32,
+            }),
+            Err(reason) => {
+                report.skipped(PassName::FarRain, reason);
+                None
+            }
+        };
         frame.shot = Some(HazeShot {
             forward: transform.forward().into(),
             extinction_per_m: extinction_per_m(&here, q) as f32,
             efficiency: settings.efficiency,
             drawn_m: frame.drawn_m(source),
-            rates: frame.rates(&field, settings.efficiency),
+            rates,
             areas: packed,
-            cloud_m: settings.cloud_base_m - eye.y,
+            far,
+            cloud_m,
+            thin_m,
             limit_m: settings.limit_m,
             fog: fog.map(|mix| HazeFog {
                 desaturation: mix.fog.desaturation * frame.fade.share() as f32,
@@ -308,5 +376,6 @@ pub(crate) fn aim_haze(
     }
     if !any {
         report.skipped(PassName::Haze, SkipReason::NoView);
+        report.skipped(PassName::FarRain, SkipReason::NoView);
     }
 }

@@ -60,6 +60,10 @@ pub struct RainView {
     /// Draws the rain beyond the single drops as cards of many drops each; see [`super::CardSettings`]. `None`: on a GPU,
     /// not on a software adapter, where they cost several times as much as the single drops.
     pub cards: Option<bool>,
+    /// Draws showers that are seen from outside as particles of many drops each, over a haze that is as much thinner; how
+    /// many is set by [`HazeSettings::far_rain`](crate::haze::HazeSettings::far_rain), and without haze there are none. `None`: on
+    /// a GPU, not on a software adapter.
+    pub far_rain: Option<bool>,
 }
 
 impl Default for RainView {
@@ -73,6 +77,7 @@ impl Default for RainView {
             container: None,
             detail: None,
             cards: None,
+            far_rain: None,
         }
     }
 }
@@ -125,6 +130,11 @@ impl RainView {
     /// Whether cards are drawn.
     pub(super) fn draws_cards(&self, software: SoftwareAdapter) -> bool {
         self.cards.unwrap_or(!software.0)
+    }
+
+    /// Whether far rain is drawn.
+    pub(crate) fn draws_far_rain(&self, software: SoftwareAdapter) -> bool {
+        self.far_rain.unwrap_or(!software.0)
     }
 }
 

@@ -36,7 +36,7 @@ pub(super) struct ExtractedHazeView {
     shot: Option<HazeShot>,
     mask: Option<Handle<Image>>,
     /// Prefiltered cube map and its scale to cd/m².
-    environment: Option<(AssetId<Image>, f32)>,
+    pub(super) environment: Option<(AssetId<Image>, f32)>,
     /// Bevy's atmosphere draws its sky at a moment that nobody else can name: haze then comes after what is transparent.
     over_sky: bool,
 }
@@ -153,7 +153,9 @@ pub(super) fn prepare_haze(
                 packed,
                 weather_mm_h: *weather,
             }),
+            far: shot.far,
             cloud_m: shot.cloud_m,
+            thin_m: shot.thin_m,
             limit_m: shot.limit_m,
             fog: shot.fog,
             mist_per_m: shot.mist_per_m,

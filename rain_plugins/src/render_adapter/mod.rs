@@ -6,6 +6,7 @@
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
 //! | `haze.rs` | all three for haze |
+//! | `far_rain.rs` | all three for far rain |
 //! | `lattice.rs` | all three for cards and their streak textures |
 //! | `lightning.rs` | the material of lightning |
 //! | `splash.rs` | all three for splashes |
@@ -13,6 +14,7 @@
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
+mod far_rain;
 mod haze;
 mod lattice;
 mod lens;
@@ -330,6 +332,7 @@ impl Plugin for RainRenderPlugin {
             .init_gpu_resource::<prepare::RainGpu>()
             .init_gpu_resource::<splash::SplashViews>()
             .init_gpu_resource::<haze::HazeViews>()
+            .init_gpu_resource::<far_rain::FarRainViews>()
             .init_gpu_resource::<lattice::LatticeViews>()
             .init_resource::<lattice::ExtractedStreaks>()
             .init_gpu_resource::<lens::LensViews>()
@@ -343,6 +346,7 @@ impl Plugin for RainRenderPlugin {
                     extract::extract_map,
                     splash::extract_splashes,
                     haze::extract_haze,
+                    far_rain::extract_far_rain,
                     lattice::extract_cards,
                     lens::extract_lenses,
                 ),
@@ -352,6 +356,7 @@ impl Plugin for RainRenderPlugin {
                 (
                     (
                         haze::prepare_haze,
+                        far_rain::prepare_far_rain,
                         splash::prepare_splashes,
                         lattice::prepare_cards,
                         lens::prepare_lenses,
@@ -397,7 +402,13 @@ impl Plugin for RainRenderPlugin {
                         .after(haze::haze_behind_glass)
                         .after(main_transmissive_pass_3d)
                         .before(main_transparent_pass_3d),
-                    (haze::haze_over_sky, splash::splash, lattice::lattice, record::rainfall)
+                    (
+                        haze::haze_over_sky,
+                        far_rain::far_rain,
+                        splash::splash,
+                        lattice::lattice,
+                        record::rainfall,
+                    )
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d)

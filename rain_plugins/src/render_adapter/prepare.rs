@@ -25,6 +25,7 @@ use rain_render::water_map::{WaterMapGpu, WaterMapInput, WaterMapPasses};
 use rain_render::waves::{WaveTileGpu, WavesGpu};
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
+use super::far_rain::FarRainViews;
 use super::haze::HazeViews;
 use super::lattice::LatticeViews;
 use super::lens::LensViews;
@@ -326,7 +327,13 @@ pub(super) fn prepare_rain(
     images: Res<RenderAssets<GpuImage>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
-    (splashes, hazes, cards, lenses): (Res<SplashViews>, Res<HazeViews>, Res<LatticeViews>, Res<LensViews>),
+    (splashes, hazes, far_rain, cards, lenses): (
+        Res<SplashViews>,
+        Res<HazeViews>,
+        Res<FarRainViews>,
+        Res<LatticeViews>,
+        Res<LensViews>,
+    ),
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
@@ -473,6 +480,7 @@ pub(super) fn prepare_rain(
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
             + splashes.memory_bytes()
             + hazes.memory_bytes()
+            + far_rain.memory_bytes()
             + cards.memory_bytes()
             + lenses.memory_bytes(),
     );

@@ -466,6 +466,8 @@ pub struct RainSettings {
     pub rainbow: f64,
     /// Whether rain beyond the single drops is drawn, as cards of many. Default: on a GPU, not on a software adapter.
     pub cards: Option<bool>,
+    /// Whether showers seen from outside are drawn as particles over their haze. Default: on a GPU, not on a software adapter.
+    pub far_rain: Option<bool>,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -508,6 +510,7 @@ impl Default for RainSettings {
             glow: 1.0,
             rainbow: 0.0,
             cards: None,
+            far_rain: None,
             lens: Lens::Off,
             look: WetLook::Physical,
         }
@@ -623,6 +626,8 @@ pub struct Outputs {
     pub masks: Vec<Mask>,
     /// Whether `contact.png` is written: all captures small, with captions. Default: true.
     pub contact_sheet: bool,
+    /// Whether `frame_0000_above.png` … are written: each capture's drops and far rain from above. Default: false.
+    pub above: bool,
     /// Whether `timeline.png` is written: intensity, wetness, level and budget over time. Default: true.
     pub timeline: bool,
 }
@@ -634,6 +639,7 @@ impl Default for Outputs {
             frames: true,
             masks: Vec::new(),
             contact_sheet: true,
+            above: false,
             timeline: true,
         }
     }

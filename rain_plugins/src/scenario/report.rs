@@ -6,7 +6,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// Names of passes, in the order of a frame.
-pub const PASS_NAMES: [&str; 14] = [
+pub const PASS_NAMES: [&str; 15] = [
     "cover",
     "surface",
     "ripples",
@@ -19,6 +19,7 @@ pub const PASS_NAMES: [&str; 14] = [
     "canopy",
     "wheels",
     "haze",
+    "far_rain",
     "rainbow",
     "lens",
 ];

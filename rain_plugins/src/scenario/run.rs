@@ -10,7 +10,7 @@ use super::error::ScenarioError;
 use super::expect::{CaptureMasks, Evaluator, Evidence};
 use super::file::{Mask, Scenario, ScenePart};
 use super::masks;
-use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, frame_name, mask_name};
+use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, above_name, frame_name, mask_name};
 use super::plot;
 use super::report::{Budget, Counts, Memory, PassRow, Report, Tally, Timings};
 use super::session::Session;
@@ -142,6 +142,9 @@ pub fn run(
         frame_ms.push(capture.frame_ms);
         if scenario.outputs.frames {
             output.write_picture(&frame_name(index), &capture.frame)?;
+        }
+        if let Some(above) = &capture.above {
+            output.write_picture(&above_name(index), above)?;
         }
         for (mask, texels) in &capture.masks {
             let bytes = masks::encode(scenario.outputs.size, texels)
@@ -390,6 +393,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
                 "splash" => &["rain_splash_make", "rain_splash"],
                 "haze" => &["rain_haze_areas", "rain_haze"],
                 "lattice" => &["rain_lattice"],
+                "far_rain" => &["rain_far_rain"],
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
                 "water_map" => &["rain_water_map"],
                 "lens" => &["rain_lens"],

@@ -312,6 +312,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             contrast: scenario.rain.contrast as f32,
             exposure_s: scenario.rain.exposure_s as f32,
             cards: scenario.rain.cards,
+            far_rain: scenario.rain.far_rain,
             ..default()
         });
         camera.insert(HazeSettings {

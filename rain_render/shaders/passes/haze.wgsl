@@ -91,14 +91,50 @@ fn azimuth_place(towards: vec3<f32>) -> f32 {
 // Optical depth along the ground at an azimuth up to a distance. Error: 0.01 of it as a mean over pixels; for one 0.027
 // of the extinction times the distance to the last rain.
 fn ground_depth(azimuth: f32, distance: f32) -> f32 {
+    return grid_depth(0u, azimuth, distance);
+}
+
+// Where the far rain's part of the grid begins, over its share.
+const FAR_GRID: u32 = RAIN_HAZE_AZIMUTHS * (RAIN_HAZE_INTERVALS + 1u);
+
+fn grid_depth(first: u32, azimuth: f32, distance: f32) -> f32 {
     let knot = clamp(rain_haze_place(distance, view.grid.z), 0.0, f32(RAIN_HAZE_INTERVALS) - 0.001);
     let i = u32(knot);
     let low = rain_haze_knot(f32(i), view.grid.z);
     let high = rain_haze_knot(f32(i) + 1.0, view.grid.z);
     let t = clamp((distance - low) / (high - low), 0.0, 1.0);
-    let row = u32(azimuth) * (RAIN_HAZE_INTERVALS + 1u) + i;
+    let row = first + u32(azimuth) * (RAIN_HAZE_INTERVALS + 1u) + i;
     let next = row + RAIN_HAZE_INTERVALS + 1u;
     return mix(mix(grid[row], grid[row + 1u], t), mix(grid[next], grid[next + 1u], t), fract(azimuth));
+}
+
+// Pieces of the way through the rain that thins out below the cloud.
+const THIN_PIECES: u32 = 4u;
+
+// Where a line of sight enters the rain that thins out, m: no more than where it ends.
+fn thin_from(towards: vec3<f32>, end: f32) -> f32 {
+    if (view.far.z <= 0.0 || towards.y <= 0.0 || view.cloud <= 0.0) {
+        return end;
+    }
+    return min(end, (view.cloud - view.far.z) / towards.y);
+}
+
+// Optical depth on the ground's grid that begins at `first` from `start` to `end`, m along the line of sight, as much as there is
+// under the cloud. Error: 0.01 of it as a mean over pixels, 0.03 of the far rain's.
+fn depth_under_cloud(first: u32, azimuth: f32, flat: f32, towards: vec3<f32>, start: f32, end: f32) -> f32 {
+    let whole = max(thin_from(towards, end), start);
+    var before = grid_depth(first, azimuth, flat * whole);
+    var sum = before - grid_depth(first, azimuth, flat * start);
+    if (whole < end) {
+        let step = (end - whole) / f32(THIN_PIECES);
+        for (var i = 0u; i < THIN_PIECES; i += 1u) {
+            let after = grid_depth(first, azimuth, flat * (whole + step * f32(i + 1u)));
+            let height = towards.y * (whole + step * (f32(i) + 0.5));
+            sum += (after - before) * rain_cloud_share(height, view.cloud, view.far.z);
+            before = after;
+        }
+    }
+    return sum / flat;
 }
 
 // Intervals in which what is drawn is taken off the areas' rain.
@@ -112,10 +148,12 @@ fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
     let mist = view.air.x * way;
     if (view.uneven < 0.5 || flat < 1e-3) {
         let drawn = drawn_metres(ends.y) - drawn_metres(ends.x);
-        return view.extinction * vec2<f32>(way, max(way - drawn, 0.0)) + mist;
+        let thin = ends.y - thin_from(towards, ends.y);
+        let all = way - 0.5 * thin * thin * max(towards.y, 0.0) / max(view.far.z, 1e-6);
+        return view.extinction * vec2<f32>(all, max(all - drawn, 0.0)) + mist;
     }
     let azimuth = azimuth_place(towards);
-    let total = (ground_depth(azimuth, flat * ends.y) - ground_depth(azimuth, flat * ends.x)) / flat;
+    let total = depth_under_cloud(0u, azimuth, flat, towards, ends.x, ends.y);
     var drawn = 0.0;
     var before = ends.x;
     var before_depth = ground_depth(azimuth, flat * ends.x);
@@ -131,6 +169,10 @@ fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
             before_depth = depth;
             before_drawn = metres;
         }
+    }
+    if (view.far.x > 0.0) {
+        let share = view.far.x * rain_far_pitch_weight(towards.y);
+        drawn += share * depth_under_cloud(FAR_GRID, azimuth, flat, towards, ends.x, ends.y);
     }
     return vec2<f32>(total, max(total - drawn, 0.0)) + mist;
 }

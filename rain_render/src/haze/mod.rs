@@ -13,5 +13,5 @@ mod params;
 mod prepare;
 
 pub use encode::{encode_haze, encode_haze_areas, encode_haze_coverage};
-pub use params::{HazeAreas, HazeBow, HazeFog, HazeInput, MAX_HAZE_LAMPS};
+pub use params::{HazeAreas, HazeBow, HazeFar, HazeFog, HazeInput, MAX_HAZE_LAMPS};
 pub use prepare::{HazeGpu, HazeTextures, HazeViewGpu};

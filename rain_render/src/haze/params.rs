@@ -22,6 +22,15 @@ pub struct HazeAreas<'a> {
     pub weather_mm_h: f32,
 }
 
+/// Far rain that is drawn as particles, for haze to leave out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HazeFar {
+    /// [`rain_core::rainfall::FarRain::share`]. Domain: [0, 0.95].
+    pub share: f32,
+    /// Extinction of the rain outside areas. Units: 1/m.
+    pub outside_per_m: f32,
+}
+
 /// Fog as an artist sets it, in place of the rain's or of a share of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HazeFog {
@@ -68,8 +77,12 @@ pub struct HazeInput<'a> {
     pub rates: &'a RateExtinction,
     /// `None`: the rain is the same everywhere.
     pub areas: Option<HazeAreas<'a>>,
+    /// `None`: no far rain is drawn.
+    pub far: Option<HazeFar>,
     /// Base of the cloud over the eye's height. Units: m.
     pub cloud_m: f32,
+    /// How far below it rain thins out, straight; 0: a sharp base. Units: m.
+    pub thin_m: f32,
     /// Longest way through the rain. Units: m. Domain: [10, 1e6].
     pub limit_m: f32,
     /// `None`: the haze of the rain.
@@ -196,6 +209,12 @@ impl HazeInput<'_> {
             uneven: f32::from(u8::from(self.areas.is_some())),
             lamps: self.lamps.len().min(MAX_HAZE_LAMPS) as u32,
             grid: [start, step, self.scale(), RateExtinction::knots_per_ln() as f32],
+            far: [
+                self.far.map_or(0.0, |far| far.share),
+                self.far.map_or(0.0, |far| far.outside_per_m),
+                self.thin_m.clamp(0.0, self.cloud_m.max(0.0)),
+                0.0,
+            ],
             drawn: fours(&self.drawn_m),
             rates: fours(&self.rates.ln_per_m),
             lamp,

@@ -47,7 +47,8 @@ pub struct HazeViewGpu {
     pub(super) draw: Option<wgpu::BindGroup>,
 }
 
-const GRID_BYTES: usize = HAZE_AZIMUTHS as usize * (HAZE_INTERVALS as usize + 1) * 4;
+/// The whole rain, then the far rain.
+const GRID_BYTES: usize = 2 * HAZE_AZIMUTHS as usize * (HAZE_INTERVALS as usize + 1) * 4;
 const BOW_BYTES: usize = size_of::<RainbowPhase>();
 const ROWS_BYTES: usize = (MAX_PACKED_ROWS + 1) * 16;
 

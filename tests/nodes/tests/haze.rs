@@ -5,14 +5,15 @@ use rain_core::haze::{
     FogTable, HazeSharing, LUMA_LINEAR, RateExtinction, cone_span_m, desaturated, extinction_per_m, lamp_glow_per_m,
 };
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32, AreaRain, AreaSettings, AreaShape};
-use rain_core::rainfall::{CLASS_COUNT, Distribution, Lamp, Spectrum};
+use rain_core::rainfall::{CLASS_COUNT, Distribution, FarAccount, FarEye, Lamp, Spectrum};
 use rain_render::haze::{
-    HazeAreas, HazeBow, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    HazeAreas, HazeBow, HazeFar, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
 };
 use rain_render::rainfall::{DEPTH_FORMAT, Lighting};
 
 use crate::device::{Device, device, kernel, library};
 use crate::maps::read_map;
+use crate::rain_areas::painting;
 
 mod air;
 
@@ -34,7 +35,9 @@ struct Shot<'a> {
     rate: f64,
     drawn_m: [f32; 64],
     areas: Option<HazeAreas<'a>>,
+    far: Option<HazeFar>,
     cloud_m: f32,
+    thin_m: f32,
     fog: Option<HazeFog>,
     mist_per_m: f32,
     bow: Option<HazeBow<'a>>,
@@ -57,7 +60,9 @@ impl Default for Shot<'_> {
             rate: 25.0,
             drawn_m: [0.0; 64],
             areas: None,
+            far: None,
             cloud_m: 1000.0,
+            thin_m: 0.0,
             fog: None,
             mist_per_m: 0.0,
             bow: None,
@@ -168,7 +173,9 @@ impl Shot<'_> {
             drawn_m: self.drawn_m,
             rates: &rates,
             areas: self.areas,
+            far: self.far,
             cloud_m: self.cloud_m,
+            thin_m: self.thin_m,
             limit_m: LIMIT_M,
             fog: self.fog,
             mist_per_m: self.mist_per_m,
@@ -401,6 +408,8 @@ fn field() -> AreaField {
             shape,
             rain,
             transition_m,
+            // The polygon is painted.
+            density: (transition_m == 30.0).then(|| painting(DVec2::new(330.0, 190.0))),
             ..AreaSettings::default()
         };
         settings.check().expect("an area");
@@ -594,5 +603,142 @@ fn four_samples_show_what_one_shows() {
     };
     for (a, b) in one.take(&gpu).iter().zip(four.take(&gpu)) {
         assert!((a[0] - b[0]).abs() < 2.0 * HALF_STEP as f32, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn haze_leaves_out_what_is_drawn_as_far_rain() {
+    let Some(gpu) = device() else { return };
+    let field = field();
+    let weather = 5.0;
+    let mut packed = AreaFieldF32::default();
+    assert!(field.pack(DVec2::ZERO, LIMIT_M.into(), &mut packed));
+    let rates = RateExtinction::new(Distribution::MarshallPalmer, 2.0);
+    let eye = FarEye {
+        eye_m: DVec3::ZERO,
+        areas: &field,
+        weather_mm_h: weather,
+        rates: &rates,
+    };
+    let mut account = FarAccount::default();
+    let mut seen = 0;
+    for (wall, turn) in [(None, 0.0), (Some(3500.0), 0.1), (Some(900.0), -0.2), (Some(40.0), 0.4)] {
+        let rotation = Quat::from_rotation_y(turn) * Quat::from_rotation_x(0.25);
+        let ahead = (rotation * Vec3::NEG_Z).as_dvec3();
+        account.look(&eye, DVec2::new(ahead.x, ahead.z), 0.8, 257, LIMIT_M.into());
+        let far = HazeFar {
+            share: 0.6,
+            outside_per_m: account.outside_per_m() as f32,
+        };
+        let shot = |far: Option<HazeFar>| Shot {
+            rotation,
+            rate: field.rate_at(DVec2::ZERO, weather),
+            wall_m: wall,
+            areas: Some(HazeAreas {
+                packed: &packed,
+                weather_mm_h: weather as f32,
+            }),
+            far,
+            thin_m: 400.0,
+            ..Shot::default()
+        };
+        let mut whole = Vec::new();
+        shot(None).each(&gpu, |_, rgb| whole.push(rgb[0]));
+        let (mut sums, mut number) = ([0.0; 2], 0);
+        let left = shot(Some(far));
+        left.each(&gpu, |towards, rgb| {
+            let before = whole[number];
+            number += 1;
+            if number % 5 != 0 || before < 0.05 {
+                return;
+            }
+            let found = (rgb[0] / before).ln();
+            let expected = 0.6
+                * account.far_depth(
+                    &eye,
+                    towards,
+                    left.way(towards),
+                    left.cloud_m.into(),
+                    left.thin_m.into(),
+                );
+            assert!(found > -2.0 * HALF_STEP / before, "haze only ever loses: {found}");
+            sums[0] += found;
+            sums[1] += expected;
+            seen += usize::from(expected > 0.05);
+        });
+        // Both are grids along azimuths, of different knots.
+        let allowed = 0.03 * sums[1] + 4.0 * HALF_STEP * (number / 5) as f64;
+        assert!((sums[0] - sums[1]).abs() < allowed, "{wall:?}: {sums:?}");
+        assert_eq!(
+            wall == Some(40.0),
+            sums[1] < 1.0,
+            "nothing is far rain near the eye: {sums:?}"
+        );
+    }
+    assert!(seen > 300, "{seen}");
+}
+
+#[test]
+fn rain_thins_out_below_its_cloud() {
+    let Some(gpu) = device() else { return };
+    let field = field();
+    let mut packed = AreaFieldF32::default();
+    assert!(field.pack(DVec2::ZERO, LIMIT_M.into(), &mut packed));
+    let areas = HazeAreas {
+        packed: &packed,
+        weather_mm_h: 5.0,
+    };
+    let even = extinction_per_m(&spectrum(2.0), 2.0);
+    for uneven in [false, true] {
+        let shot = Shot {
+            rotation: Quat::from_rotation_x(0.3),
+            rate: if uneven { field.rate_at(DVec2::ZERO, 5.0) } else { 2.0 },
+            wall_m: None,
+            cloud_m: 700.0,
+            thin_m: 300.0,
+            areas: uneven.then_some(areas),
+            ..Shot::default()
+        };
+        let (mut sums, mut number, mut thinned) = ([0.0; 2], 0, 0);
+        shot.each(&gpu, |towards, rgb| {
+            number += 1;
+            let way = shot.way(towards);
+            if number % 11 != 0 || towards.y < 0.01 {
+                return;
+            }
+            const PIECES: u32 = 40;
+            let step = way / f64::from(PIECES);
+            let expected: f64 = (0..PIECES)
+                .map(|i| {
+                    let (low, high) = (step * f64::from(i), step * f64::from(i + 1));
+                    let share = rain_core::rainfall::cloud_share(towards.y * 0.5 * (low + high), 700.0, 300.0);
+                    let depth = if uneven {
+                        field.along(towards * low, towards * high, 5.0, |rate| {
+                            extinction_per_m(&spectrum(rate), 2.0)
+                        })
+                    } else {
+                        even * step
+                    };
+                    depth * share
+                })
+                .sum();
+            if expected < 2.0 {
+                let found = -rgb[0].ln();
+                sums[0] += found;
+                sums[1] += expected;
+                thinned += usize::from(way < f64::from(LIMIT_M));
+                if !uneven {
+                    assert!(
+                        (found - expected).abs() < 0.002 * expected + HALF_STEP / rgb[0],
+                        "{found} {expected}"
+                    );
+                }
+            }
+        });
+        let allowed = 0.01 * sums[1] + HALF_STEP * f64::from(number / 11);
+        assert!(
+            thinned > 100 && (sums[0] - sums[1]).abs() < allowed,
+            "{uneven}: {sums:?} {thinned}"
+        );
     }
 }

@@ -5,6 +5,7 @@ mod beads;
 mod cover_parity;
 mod device;
 mod far;
+mod far_rain;
 mod field_parity;
 mod film_waves;
 mod glass;

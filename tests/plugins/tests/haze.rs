@@ -12,6 +12,7 @@ use image::RgbImage;
 use rain_core::haze::{HazeSharing, extinction_per_m, mist_extinction_per_m};
 use rain_core::rainfall::areas::{AreaRain, AreaSettings, AreaShape};
 use rain_core::rainfall::{CLASS_COUNT, DrawRange, SizeClass};
+use rain_plugins::haze::FarRainViewFrame;
 use rain_plugins::prelude::*;
 use rain_plugins::rainfall::RainViewFrame;
 use rain_plugins::render_adapter::{MaskKind, mask_image};
@@ -364,6 +365,90 @@ fn a_lamp_has_a_halo_in_rain_that_fades_outwards_and_none_behind_a_wall() {
     assert!(dry.iter().all(|v| *v < 1.0), "{dry:?}");
     assert!(wet[0] > 20.0 && wet.windows(2).all(|w| w[0] > w[1]), "{wet:?}");
     assert!(hidden.iter().all(|v| *v < 2.0), "{hidden:?}");
+}
+
+#[test]
+fn far_rain_is_drawn_where_a_shower_is_in_view_from_outside_and_its_curtain_stays_as_dense() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = hazy();
+    world::ground(test.world());
+    test.world().spawn(Weather::rain(0.0));
+    let area = |z: f64| {
+        RainArea(AreaSettings {
+            centre_m: bevy::math::DVec2::new(0.0, z),
+            shape: AreaShape::Circle { radius_m: 400.0 },
+            rain: AreaRain::Rate(25.0),
+            transition_m: 60.0,
+            ..default()
+        })
+    };
+    let shower = test.world().spawn(area(-900.0)).id();
+    let mask = with_mask(&mut test);
+    let camera = test.camera;
+    test.look(Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.0, 2.0, -10.0));
+    let draws = |test: &mut TestApp, far: bool| {
+        test.world().get_mut::<RainView>(camera).expect("a view").far_rain = Some(far);
+        test.frames(3, FRAME);
+        test.reset();
+        test.frames(3, FRAME);
+        test.recorded(PassName::FarRain)
+    };
+    // Mean over the middle of the picture above the horizon, and several moments: particles are few.
+    let mean = |test: &mut TestApp| {
+        let mut sum = 0.0;
+        for _ in 0..6 {
+            test.frames(40, FRAME);
+            let obscured = read(test, &mask);
+            sum += (4..30_u32)
+                .flat_map(|y| (44..84_u32).map(move |x| (y * SIZE[0] + x) as usize))
+                .map(|i| obscured[i] / (6.0 * 26.0 * 40.0))
+                .sum::<f64>();
+        }
+        sum
+    };
+    assert_eq!(draws(&mut test, false), 0);
+    assert_eq!(test.skipped(PassName::FarRain, SkipReason::Disabled), 3);
+    let curtain = mean(&mut test);
+    assert_eq!(draws(&mut test, true), 3);
+    let frame = test.world().get::<FarRainViewFrame>(camera).expect("a view");
+    let rain = frame.rain().expect("far rain");
+    assert!(
+        rain.share > 0.2 && rain.particles.len() > 300,
+        "{} {}",
+        rain.share,
+        rain.particles.len()
+    );
+    let fit = rain.containers[0];
+    assert!(
+        (fit.distance_m - 500.0).abs() < 1e-3 && (fit.anchor_m.y + 500.0).abs() < 1e-3,
+        "{fit:?}"
+    );
+    let shafts = mean(&mut test);
+    assert!(
+        curtain > 0.3 && (shafts / curtain - 1.0).abs() < 0.05,
+        "{shafts}, not {curtain}"
+    );
+    // Behind the eye, about it, and gone: no pass.
+    for place in [Some(900.0), Some(0.0), None] {
+        match place {
+            Some(z) => test.world().entity_mut(shower).insert(area(z)),
+            None => test.world().entity_mut(shower).remove::<RainArea>(),
+        };
+        assert_eq!(draws(&mut test, true), 0, "{place:?}");
+        assert_eq!(test.skipped(PassName::FarRain, SkipReason::NoRain), 3, "{place:?}");
+    }
+    // The artists' fog is not the rain's: nothing is taken off it.
+    test.world().entity_mut(shower).insert(area(-900.0));
+    assert_eq!(draws(&mut test, true), 3);
+    set(&mut test, |s| s.artist = Some(ArtistFog::default()));
+    assert_eq!(test.recorded(PassName::FarRain), 0);
+    set(&mut test, |s| {
+        s.artist = None;
+        s.far_rain.budget = 0;
+    });
+    assert_eq!(test.recorded(PassName::FarRain), 0);
 }
 
 #[test]
