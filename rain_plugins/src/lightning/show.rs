@@ -2,7 +2,6 @@
 
 use std::f32::consts::PI;
 
-use bevy::camera::Exposure;
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::ecs::system::SystemParam;
 use bevy::light::{DirectionalLight, GlobalAmbientLight, NotShadowCaster, NotShadowReceiver, Skybox};
