@@ -22,8 +22,10 @@
 //! | plugin | what it adds |
 //! |---|---|
 //! | `RainEcsPlugin` | clock, weather, drop field: the simulation, without a renderer |
+//! | [`cloud_light::CloudLightPlugin`] | clouds of the rain that dim lights and skies that ask for it |
 //! | [`cover::CoverPlugin`] | what stops rain |
 //! | [`haze::HazePlugin`] | haze of rain, far showers, glow of lamps |
+//! | [`rainbow::RainbowPlugin`] | rainbows in the haze of cameras that ask for them |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
 //! | [`lightning::LightningPlugin`] | flashes of storms that ask for them, and their light |
@@ -32,10 +34,12 @@
 //! | [`waves::WavesPlugin`] | rings of rain and interactive waves on puddles |
 //! | [`render_adapter::RainRenderPlugin`] | the passes |
 
+pub mod cloud_light;
 pub mod cover;
 pub mod haze;
 pub mod lens;
 pub mod lightning;
+pub mod rainbow;
 pub mod rainfall;
 pub mod render_adapter;
 pub mod report;
@@ -66,6 +70,8 @@ impl PluginGroup for RainPlugins {
             .add(cover::CoverPlugin)
             .add(rainfall::RainfallPlugin)
             .add(haze::HazePlugin)
+            .add(rainbow::RainbowPlugin)
+            .add(cloud_light::CloudLightPlugin)
             .add(splash::SplashPlugin)
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
@@ -100,11 +106,13 @@ impl Plugin for RainSchedulePlugin {
 
 /// What users type.
 pub mod prelude {
+    pub use crate::cloud_light::{CloudLight, CloudLightPlugin};
     pub use crate::cover::CoverSettings;
-    pub use crate::haze::{ArtistFog, HazeMask, HazePlugin, HazeSettings};
+    pub use crate::haze::{AreaFog, ArtistFog, FarRainSettings, HazeMask, HazePlugin, HazeSettings, HazeSky, Mist};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
     pub use crate::lightning::{LightningLight, LightningLook};
-    pub use crate::rainfall::{CardSettings, RainView};
+    pub use crate::rainbow::{Rainbow, RainbowPlugin};
+    pub use crate::rainfall::{CardSettings, RainView, SeenThrough};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::splash::{SplashMask, SplashSettings};

@@ -20,6 +20,10 @@ pub enum PassName {
     Reflection,
     /// Haze of rain.
     Haze,
+    /// Far showers as particles.
+    FarRain,
+    /// Rainbows, in the haze's pass.
+    Rainbow,
     /// Streak textures, made once.
     StreakTextures,
     /// Splashes of rain.
@@ -45,6 +49,8 @@ impl PassName {
             Self::Waves => "waves",
             Self::Reflection => "reflection",
             Self::Haze => "haze",
+            Self::FarRain => "far_rain",
+            Self::Rainbow => "rainbow",
             Self::StreakTextures => "streak_textures",
             Self::Splash => "splash",
             Self::Lattice => "lattice",
@@ -78,6 +84,10 @@ pub enum SkipReason {
     NoView,
     /// Too little to be seen.
     Negligible,
+    /// There is no sun, or its light is 0.
+    NoSun,
+    /// The view shows no haze.
+    NoHaze,
     /// Turned off by a setting.
     Disabled,
     /// The view's projection or sample count is not supported by the pass.
@@ -99,6 +109,8 @@ impl SkipReason {
             Self::NothingMoved => "nothing moved",
             Self::NoView => "no view",
             Self::Negligible => "negligible",
+            Self::NoSun => "no sun",
+            Self::NoHaze => "no haze",
             Self::Disabled => "disabled",
             Self::Unsupported => "unsupported view",
         }
@@ -114,7 +126,7 @@ pub struct PassRecord {
     pub skipped: BTreeMap<SkipReason, u64>,
 }
 
-/// Frames whose counts of drops and cards are kept.
+/// Frames whose counts of drops, cards and splashes are kept.
 pub const KEPT_FRAMES: usize = 16_384;
 
 /// What the rain passes did: shared by the main and the render world.
@@ -132,6 +144,11 @@ pub struct Report {
     pub drops: VecDeque<u32>,
     /// Cards handed to the GPU in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
     pub cards: VecDeque<u32>,
+    /// Crowns and thrown drops that the GPU drew in the latest frames that drew splashes, at most [`KEPT_FRAMES`] of them. A
+    /// frame's count comes back a frame or two later.
+    pub splashes: VecDeque<u32>,
+    /// Particles of far rain in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
+    pub far_rain: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
     pub gpu_memory_bytes: usize,
 }
@@ -166,6 +183,16 @@ impl RainReport {
     /// Notes how many cards a frame drew.
     pub fn cards(&self, count: u32) {
         keep(&mut self.lock().cards, count);
+    }
+
+    /// Notes how many crowns and thrown drops a frame drew.
+    pub fn splashes(&self, count: u32) {
+        keep(&mut self.lock().splashes, count);
+    }
+
+    /// Notes how many particles of far rain a frame drew.
+    pub fn far_rain(&self, count: u32) {
+        keep(&mut self.lock().far_rain, count);
     }
 
     /// Notes the GPU memory in use.

@@ -49,6 +49,14 @@ struct LampParams {
     limits: vec4<f32>,
 }
 
+// A box that is seen through. Its axes over their half lengths, 1/m; w: the eye in its own frame, where it reaches from
+// -1 to 1.
+struct GlassPane {
+    along: vec4<f32>,
+    up: vec4<f32>,
+    across: vec4<f32>,
+}
+
 struct RainfallView {
     // Eye-relative world to clip, at the end of the exposure.
     clip_from_eye: mat4x4<f32>,
@@ -82,11 +90,12 @@ struct RainfallView {
     soft: f32,
     drops: u32,
     lamps: u32,
-    pad_b: u32,
+    panes: u32,
     pad_c: u32,
     cover: CoverParams,
     classes: array<RainfallClass, 12>,
     lamp: array<LampParams, 16>,
+    pane: array<GlassPane, 8>,
 }
 
 // See `DropRecord` in rain_core.
@@ -99,7 +108,7 @@ struct DropRecord {
 struct Streak {
     // Head and tail, px from the upper left corner.
     ends: vec4<f32>,
-    // Depth of head and tail, half width px (0: not drawn), opacity.
+    // Depth of head and tail, half width px (0: not drawn, below 0: behind what is transparent), opacity.
     shape: vec4<f32>,
     // Radiance; w: coverage of a pixel by the swept drop.
     light: vec4<f32>,
@@ -184,6 +193,8 @@ struct MaskView {
     eye_from_clip: mat4x4<f32>,
     // x: near plane m, y: width px, z: height px, w: 1 where the view of masks shows what wet materials know.
     screen: vec4<f32>,
+    // x, y: upper left corner of the view in its target, px.
+    corner: vec4<f32>,
     surface: SurfaceParams,
 }
 
@@ -417,11 +428,12 @@ struct LatticeParams {
     soft: f32,
     cards: u32,
     lamps: u32,
-    pad_a: u32,
+    panes: u32,
     pad_b: u32,
     pad_c: u32,
     cover: CoverParams,
     lamp: array<LampParams, 16>,
+    pane: array<GlassPane, 8>,
 }
 
 // A cell's picture of one class; see `Card` in rain_core.
@@ -431,6 +443,45 @@ struct Card {
     turn: vec4<f32>,
     place: vec4<f32>,
     layers: vec4<u32>,
+}
+
+// A step in water.
+struct SplashFoot {
+    // Where, on the water; w: seconds since.
+    place: vec4<f32>,
+    // Tells it from all others; w: bits of its strength, 0..1.
+    key: vec4<u32>,
+}
+
+// A view of far rain.
+struct FarRainParams {
+    // Eye-relative world to clip.
+    clip_from_eye: mat4x4<f32>,
+    // Radiance scale of the environment map; w: its highest mip level.
+    environment: vec4<f32>,
+    // Uniform surrounding radiance; w unused.
+    ambient: vec4<f32>,
+    // Direction towards the sun; w unused.
+    sun_direction: vec4<f32>,
+    // Illuminance of the sun, exposed; w unused.
+    sun: vec4<f32>,
+    // Unit direction that particles are drawn out along; w unused.
+    axis: vec4<f32>,
+    // Base of the cloud over the eye, and how far below it rain thins out, m.
+    cloud: f32,
+    thin: f32,
+    pad_b: f32,
+    pad_c: f32,
+}
+
+// A particle of far rain; see `FarParticle` in rain_core. Relative to the eye.
+struct FarParticle {
+    centre: vec3<f32>,
+    presence: f32,
+    half_width: f32,
+    phase: f32,
+    rank: f32,
+    level: f32,
 }
 
 // A view of splashes. Positions are relative to the eye.
@@ -480,9 +531,10 @@ struct SplashView {
     span: u32,
     // Room in the list of parts.
     capacity: u32,
-    pad_a: u32,
-    pad_b: u32,
-    pad_c: u32,
+    lamps: u32,
+    panes: u32,
+    // Steps whose splashes are drawn.
+    feet: u32,
     cover: CoverParams,
     levels: LevelMapParams,
     // Tables of SplashField in rain_core: of counts and of classes, a hash each.
@@ -490,6 +542,9 @@ struct SplashView {
     limits: array<vec4<u32>, 3>,
     // Start, span and bend of the diameters of a class; w: weight.
     classes: array<vec4<f32>, 12>,
+    lamp: array<LampParams, 16>,
+    pane: array<GlassPane, 8>,
+    foot: array<SplashFoot, 8>,
 }
 
 // A crown or a thrown drop to draw.
@@ -500,7 +555,8 @@ struct SplashPart {
     shape: vec4<f32>,
     // Radiance; w: coverage.
     light: vec4<f32>,
-    // x: 1 for a crown; y: half the depth of its foot's ellipse, px, z: its jets, 0..1; w: softness, m.
+    // x: 1 for a crown; y: half the depth of its foot's ellipse, px, z: its jets, 0..1, above for many; w: softness, m,
+    // below 0 behind what is transparent.
     form: vec4<f32>,
 }
 
@@ -543,10 +599,16 @@ struct HazeView {
     environment: vec4<f32>,
     // Even light around, exposed.
     ambient: vec4<f32>,
+    // w: how much of the haze is the artists' fog.
     sun_direction: vec4<f32>,
     sun: vec4<f32>,
-    // Where the view looks; w: near plane, m.
+    // Where the view looks; w: 0.
     forward: vec4<f32>,
+    // Row of the projection that makes depth, for places about the eye.
+    depth_row: vec4<f32>,
+    // Mist, 1/m; height of a mirror over the eye, m, 0: none; gain of the rainbow, 0: none; what of the sun's light the
+    // haze shows.
+    air: vec4<f32>,
     // Corner and size of the view in the target, px.
     viewport: vec4<f32>,
     // The artists' fog: colour, times the luminance around; w: how much of its colour it has lost.
@@ -558,15 +620,18 @@ struct HazeView {
     // Base of the cloud over the eye, and the longest way, m.
     cloud: f32,
     limit: f32,
-    // The artists' fog, 1/m; below 0: the physical haze.
+    // The artists' fog, 1/m.
     artist: f32,
-    // 1: the artists' fog has a colour of its own.
+    // How much of the artists' fog has a colour of its own.
     coloured: f32,
     // 1: areas divide the rain.
     uneven: f32,
     lamps: u32,
     // Areas' grid: first azimuth and step, rad; scale of its knots; knots of rates for each unit of ln.
     grid: vec4<f32>,
+    // Far rain, which is drawn as particles: its share of what may be; extinction of the rain outside areas, 1/m. z: how far
+    // below the cloud's base rain thins out, m.
+    far: vec4<f32>,
     // Metres of rain that what is drawn stands for, by distance.
     drawn: array<vec4<f32>, 16>,
     // ln of the extinction, 1/m, by rate.

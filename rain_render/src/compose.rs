@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use rain_core::haze::{FIRST_RATE_MM_H, FOG_TABLE_END_M, FOG_TABLE_KNOTS, RATE_KNOTS};
-use rain_core::rainfall::{FADE_END, RANGE_CAP_M};
+use rain_core::optics::{BOW_KNOTS, BOW_SPAN_DEG, BOW_STEP_DEG};
+use rain_core::rainfall::{FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, RANGE_CAP_M};
 use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::RING_FADE;
@@ -32,10 +33,13 @@ pub const LIBRARIES: &[Library] = library![
     "drop_field",
     "cover",
     "streak",
+    "far_rain",
     "drop_light",
     "lamp_light",
     "surroundings",
+    "glass",
     "haze",
+    "rainbow",
     "wetness",
     "standing_water",
     "ground_memory",
@@ -90,6 +94,7 @@ pub const PASSES: &[Pass] = passes![
     "splash_draw",
     "haze_areas",
     "haze",
+    "far_rain",
     "lens"
 ];
 
@@ -146,11 +151,26 @@ pub fn constants() -> String {
         ("RAIN_FOG_KNOTS", FOG_TABLE_KNOTS as f64),
         ("RAIN_FIRST_RATE_MM_H", FIRST_RATE_MM_H),
         ("RAIN_HAZE_FIRST_M", HAZE_FIRST_M),
+        ("RAIN_FAR_BEGIN_M", FAR_BEGIN_M[0]),
+        ("RAIN_FAR_WHOLE_M", FAR_BEGIN_M[1]),
+        ("RAIN_FAR_LOW_FROM", FAR_PITCH[0][0]),
+        ("RAIN_FAR_LOW_TO", FAR_PITCH[0][1]),
+        ("RAIN_FAR_HIGH_FROM", FAR_PITCH[1][0]),
+        ("RAIN_FAR_HIGH_TO", FAR_PITCH[1][1]),
+        ("RAIN_FAR_HEIGHT", FAR_HEIGHT),
+        ("RAIN_FAR_OPACITY", FAR_OPACITY),
+        ("RAIN_FAR_SHADE", FAR_SHADE),
+        ("RAIN_BOW_LOW", BOW_SPAN_DEG[0]),
+        ("RAIN_BOW_HIGH", BOW_SPAN_DEG[1]),
+        ("RAIN_BOW_BELOW", BOW_STEP_DEG[0]),
+        ("RAIN_BOW_WITHIN", BOW_STEP_DEG[1]),
+        ("RAIN_BOW_ABOVE", BOW_STEP_DEG[2]),
     ] {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }
     for (name, value) in [
         ("RAIN_RATE_KNOTS", RATE_KNOTS as u32),
+        ("RAIN_BOW_KNOTS", BOW_KNOTS as u32),
         ("RAIN_HAZE_AZIMUTHS", HAZE_AZIMUTHS),
         ("RAIN_HAZE_INTERVALS", HAZE_INTERVALS),
     ] {

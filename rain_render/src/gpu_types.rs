@@ -10,7 +10,9 @@ use rain_core::rainfall::{CLASS_COUNT, MAX_LAMPS};
 use rain_core::splash::SPLASH_COUNTS;
 use rain_core::weather::SurfaceClass;
 
+use crate::glass::MAX_PANES;
 use crate::reflection::MAX_MIRRORS;
+use crate::splash::MAX_FEET;
 
 /// The depth map along the rain.
 #[repr(C)]
@@ -39,6 +41,15 @@ pub struct RainfallClass {
     pub diameter: [f32; 4],
 }
 
+/// A box that is seen through.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GlassPane {
+    pub along: [f32; 4],
+    pub up: [f32; 4],
+    pub across: [f32; 4],
+}
+
 /// A view of the rain.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -60,11 +71,12 @@ pub struct RainfallView {
     pub soft: f32,
     pub drops: u32,
     pub lamps: u32,
-    pub pad_b: u32,
+    pub panes: u32,
     pub pad_c: u32,
     pub cover: CoverParams,
     pub classes: [RainfallClass; CLASS_COUNT],
     pub lamp: [LampParams; MAX_LAMPS],
+    pub pane: [GlassPane; MAX_PANES],
 }
 
 /// A projected streak; written and read by the GPU only.
@@ -144,6 +156,7 @@ pub struct SurfaceParams {
 pub struct MaskView {
     pub eye_from_clip: [[f32; 4]; 4],
     pub screen: [f32; 4],
+    pub corner: [f32; 4],
     pub surface: SurfaceParams,
 }
 
@@ -340,11 +353,36 @@ pub struct LatticeParams {
     pub soft: f32,
     pub cards: u32,
     pub lamps: u32,
-    pub pad_a: u32,
+    pub panes: u32,
     pub pad_b: u32,
     pub pad_c: u32,
     pub cover: CoverParams,
     pub lamp: [LampParams; MAX_LAMPS],
+    pub pane: [GlassPane; MAX_PANES],
+}
+
+/// A step in water.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SplashFoot {
+    pub place: [f32; 4],
+    pub key: [u32; 4],
+}
+
+/// A view of far rain.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct FarRainParams {
+    pub clip_from_eye: [[f32; 4]; 4],
+    pub environment: [f32; 4],
+    pub ambient: [f32; 4],
+    pub sun_direction: [f32; 4],
+    pub sun: [f32; 4],
+    pub axis: [f32; 4],
+    pub cloud: f32,
+    pub thin: f32,
+    pub pad_b: f32,
+    pub pad_c: f32,
 }
 
 /// A view of splashes.
@@ -374,14 +412,17 @@ pub struct SplashView {
     pub since: f32,
     pub span: u32,
     pub capacity: u32,
-    pub pad_a: u32,
-    pub pad_b: u32,
-    pub pad_c: u32,
+    pub lamps: u32,
+    pub panes: u32,
+    pub feet: u32,
     pub cover: CoverParams,
     pub levels: LevelMapParams,
     pub counts: [u32; SPLASH_COUNTS],
     pub limits: [u32; CLASS_COUNT],
     pub classes: [[f32; 4]; CLASS_COUNT],
+    pub lamp: [LampParams; MAX_LAMPS],
+    pub pane: [GlassPane; MAX_PANES],
+    pub foot: [SplashFoot; MAX_FEET],
 }
 
 /// A crown or a thrown drop to draw; written and read by the GPU only.
@@ -437,6 +478,8 @@ pub struct HazeView {
     pub sun_direction: [f32; 4],
     pub sun: [f32; 4],
     pub forward: [f32; 4],
+    pub depth_row: [f32; 4],
+    pub air: [f32; 4],
     pub viewport: [f32; 4],
     pub fog: [f32; 4],
     pub extinction: f32,
@@ -448,6 +491,7 @@ pub struct HazeView {
     pub uneven: f32,
     pub lamps: u32,
     pub grid: [f32; 4],
+    pub far: [f32; 4],
     pub drawn: [[f32; 4]; 16],
     pub rates: [[f32; 4]; 16],
     pub lamp: [HazeLamp; 16],
@@ -497,12 +541,15 @@ macro_rules! layout {
 /// The layouts of every struct of this file.
 #[must_use]
 pub fn layouts() -> Vec<Layout> {
-    use rain_core::rainfall::{Card, DropRecord, TileDrop};
+    use rain_core::rainfall::{Card, DropRecord, FarParticle, TileDrop};
     vec![
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
         layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead, size,
-            viewport, focal, near, exposure, contrast, kappa, soft, drops, lamps, pad_b, pad_c, cover, classes, lamp),
+            viewport, focal, near, exposure, contrast, kappa, soft, drops, lamps, panes, pad_c, cover, classes, lamp,
+            pane),
+        layout!(GlassPane: along, up, across),
+        layout!(SplashFoot: place, key),
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
@@ -510,7 +557,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(ReflectionParams: clip_from_eye, eye, plane),
         layout!(WaterMapPlaces: fine, middle, coarse, fine_centre, middle_centre, coarse_centre, pad),
         layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors, map),
-        layout!(MaskView: eye_from_clip, screen, surface),
+        layout!(MaskView: eye_from_clip, screen, corner, surface),
         layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant_squared, g, keep, inverse_keep,
             blend, per_cell, rim, rim_damping, hidden_variance, pad_a, pad_b, pad_c),
         layout!(WaveSource: low, count, start, along, length, per_width, height, back),
@@ -526,11 +573,13 @@ pub fn layouts() -> Vec<Layout> {
         layout!(TileDrop: x, y, diameter, share),
         layout!(LampParams: place, intensity, direction, limits),
         layout!(LatticeParams: clip_from_eye, environment, ambient, sun_direction, sun, fog, near, contrast, soft, cards,
-            lamps, pad_a, pad_b, pad_c, cover, lamp),
+            lamps, panes, pad_b, pad_c, cover, lamp, pane),
+        layout!(FarRainParams: clip_from_eye, environment, ambient, sun_direction, sun, axis, cloud, thin, pad_b, pad_c),
+        layout!(FarParticle: centre, presence, half_width, phase, rank, level),
         layout!(Card: centre, facing, turn, place, layers),
         layout!(SplashView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, planes, wind,
             stream, viewport, fraction, cell, focal, near, exposure, contrast, soft, reach, near_reach, film, since, span,
-            capacity, pad_a, pad_b, pad_c, cover, levels, counts, limits, classes),
+            capacity, lamps, panes, feet, cover, levels, counts, limits, classes, lamp, pane, foot),
         layout!(SplashPart: ends, shape, light, form),
         layout!(SplashFind: part, id, number, pad_a, pad_b),
         layout!(LensView: viewport, arms, turns, cycle, size, half_tan, distance, aperture, mist, mist_per_s, wiping, pad_a,
@@ -538,7 +587,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(LensDrop: place, along, radius, stretch, key, pad_a),
         layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
         layout!(HazeLamp: place, light, axis),
-        layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward, viewport, fog,
-            extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, drawn, rates, lamp),
+        layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward,
+            depth_row, air, viewport, fog, extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, far, drawn, rates, lamp),
     ]
 }

@@ -7,6 +7,8 @@
 mod bindings;
 pub mod compose;
 pub mod cover;
+pub mod far_rain;
+pub mod glass;
 pub mod gpu_types;
 pub mod haze;
 mod lamps;

@@ -3,7 +3,7 @@
 //!
 //! Output: three R32Float targets. Only recorded when somebody asked for a mask.
 
-use glam::{Mat4, Vec2};
+use glam::{Mat4, Vec4};
 
 use crate::bindings::{sampler_entry, texture_entry};
 use crate::compose;
@@ -180,7 +180,8 @@ impl MaskGpu {
 
     /// Uploads a view and binds its depth, the cover map and the ground's maps.
     ///
-    /// `eye_from_clip`: clip to eye-relative world; `near_m`: near plane, m; `size_px`: target size; `known`: what wet
+    /// `eye_from_clip`: clip to eye-relative world; `near_m`: near plane, m; `viewport_px`: corner and
+    /// size of the view in its target; `known`: what wet
     /// materials know of the same pixels ([`KNOWN_FORMAT`], `rain_mask_texel`).
     #[must_use]
     pub fn prepare(
@@ -189,7 +190,7 @@ impl MaskGpu {
         queue: &wgpu::Queue,
         eye_from_clip: Mat4,
         near_m: f32,
-        size_px: Vec2,
+        viewport_px: Vec4,
         surface: SurfaceParams,
         scene_depth: &wgpu::TextureView,
         cover: &wgpu::TextureView,
@@ -198,7 +199,13 @@ impl MaskGpu {
     ) -> wgpu::BindGroup {
         let view = MaskView {
             eye_from_clip: eye_from_clip.to_cols_array_2d(),
-            screen: [near_m, size_px.x, size_px.y, f32::from(u8::from(known.is_some()))],
+            screen: [
+                near_m,
+                viewport_px.z,
+                viewport_px.w,
+                f32::from(u8::from(known.is_some())),
+            ],
+            corner: [viewport_px.x, viewport_px.y, 0.0, 0.0],
             surface,
         };
         // Each view has its own.

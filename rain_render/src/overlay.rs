@@ -12,6 +12,8 @@ pub(crate) struct OverlayKey {
     samples: u32,
     /// Coverage instead of colour.
     coverage: bool,
+    /// What lies behind glass instead of what does not.
+    behind: bool,
 }
 
 impl OverlayKey {
@@ -21,6 +23,7 @@ impl OverlayKey {
             format,
             samples,
             coverage: false,
+            behind: false,
         }
     }
 
@@ -30,11 +33,18 @@ impl OverlayKey {
             format: COVERAGE_FORMAT,
             samples,
             coverage: true,
+            behind: false,
         }
+    }
+
+    /// The same for what lies behind glass.
+    pub fn behind(self) -> Self {
+        Self { behind: true, ..self }
     }
 }
 
-/// Pipelines of one shader with the entry points `vertex`, `colour` and `coverage`, made when they are asked for.
+/// Pipelines of one shader with the entry points `vertex`, `colour` and `coverage`, and `vertex_behind` where it tells what
+/// lies behind glass, made when they are asked for.
 #[derive(Debug)]
 pub(crate) struct Overlay {
     label: &'static str,
@@ -88,6 +98,26 @@ impl Overlay {
         }
     }
 
+    /// Makes sure that the pipelines for a target exist; `coverage` asks for the mask's as well, `behind` for those of what
+    /// lies behind glass.
+    pub fn prepare_all(
+        &mut self,
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        samples: u32,
+        coverage: bool,
+        behind: bool,
+    ) {
+        let colour = OverlayKey::colour(format, samples);
+        let mask = coverage.then(|| OverlayKey::coverage(samples));
+        for key in [Some(colour), mask].into_iter().flatten() {
+            self.prepare(device, key);
+            if behind {
+                self.prepare(device, key.behind());
+            }
+        }
+    }
+
     /// Makes sure that a pipeline exists.
     pub fn prepare(&mut self, device: &wgpu::Device, key: OverlayKey) {
         if !self.made.contains_key(&key) {
@@ -111,7 +141,7 @@ impl Overlay {
             layout: Some(&self.pipeline_layout),
             vertex: wgpu::VertexState {
                 module: &self.shader,
-                entry_point: Some("vertex"),
+                entry_point: Some(if key.behind { "vertex_behind" } else { "vertex" }),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[],
             },

@@ -8,6 +8,7 @@ mod fall;
 mod fall_speed;
 mod ground;
 mod hash;
+mod lamps;
 mod light;
 mod ripples;
 mod spectrum;
@@ -29,6 +30,7 @@ pub fn all() -> Vec<Study> {
         spectrum::studies(),
         drop::studies(),
         light::studies(),
+        lamps::studies(),
         streaks::studies(),
         hash::studies(),
         canopy::studies(),

@@ -1,4 +1,5 @@
-//! A European street in the rain, generated: `street.glb` with its own PBR textures, and `car.glb`; a paved court, `court.glb`.
+//! A European street in the rain, generated: `street.glb` with its own PBR textures, and `car.glb`; a paved court,
+//! `court.glb`; a country road over a plain, `plain.glb`.
 //!
 //! Everything comes from formulas and one seed; the same seed gives the same bytes. Where things are does not depend on
 //! the seed and is documented in [`mod@layout`], so that tests can stand in the arcade, measure hollows and look up at
@@ -16,6 +17,7 @@ pub mod layout;
 pub mod materials;
 pub mod mesh;
 pub mod noise;
+pub mod plain;
 pub mod street_lamps;
 pub mod textures;
 pub mod trees;
@@ -37,6 +39,8 @@ pub const STREET_FILE: &str = "street.glb";
 pub const CAR_FILE: &str = "car.glb";
 /// Name of the court's file.
 pub const COURT_FILE: &str = "court.glb";
+/// Name of the plain's file.
+pub const PLAIN_FILE: &str = "plain.glb";
 /// Name of the file with the depth of the court's paving.
 pub const COURT_DEPTH_FILE: &str = "court_depth.png";
 /// Seed of the street in pictures and tests.
@@ -46,7 +50,8 @@ pub const LAMP_CD: f32 = 1700.0;
 /// Warm white (about 3000 K, seen by a camera balanced for dusk), linear RGB.
 const WARM: [f32; 3] = [1.0, 0.67, 0.35];
 
-/// Writes `street.glb`, `car.glb`, `court.glb` and `court_depth.png` into `dir`, which is made when it does not exist.
+/// Writes `street.glb`, `car.glb`, `court.glb`, `court_depth.png` and `plain.glb` into `dir`, which is made when it does
+/// not exist.
 ///
 /// # Errors
 /// [`StreetError::Write`] names what could not be written.
@@ -59,6 +64,7 @@ pub fn generate(dir: &Path, seed: u64) -> Result<Layout, StreetError> {
     write_atomically(&dir.join(CAR_FILE), &car::glb()?)?;
     write_atomically(&dir.join(COURT_FILE), &court::glb(seed)?)?;
     write_atomically(&dir.join(COURT_DEPTH_FILE), &court::depth_png(seed)?)?;
+    write_atomically(&dir.join(PLAIN_FILE), &plain::glb(seed)?)?;
     Ok(layout())
 }
 

@@ -15,10 +15,11 @@ fn main() -> ExitCode {
     match street::generate(Path::new(&dir), seed) {
         Ok(_) => {
             report(&format!(
-                "wrote {}, {} and {} to {dir}",
+                "wrote {}, {}, {} and {} to {dir}",
                 street::STREET_FILE,
                 street::CAR_FILE,
-                street::COURT_FILE
+                street::COURT_FILE,
+                street::PLAIN_FILE
             ));
             ExitCode::SUCCESS
         }

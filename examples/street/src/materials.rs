@@ -226,6 +226,15 @@ pub(crate) fn surface(name: &str, factor: [f32; 3], m: MapIds) -> Value {
     })
 }
 
+/// The carriageway: its colour over its own width, relief and roughness over a small tile in the second coordinates.
+pub(crate) fn asphalt(maps: MapIds) -> Value {
+    let mut m = surface("asphalt", [1.0; 3], maps);
+    m["normalTexture"]["texCoord"] = json!(1);
+    m["occlusionTexture"]["texCoord"] = json!(1);
+    m["pbrMetallicRoughness"]["metallicRoughnessTexture"]["texCoord"] = json!(1);
+    m
+}
+
 fn plain(name: &str, color: [f32; 3], roughness: f32, metallic: f32) -> Value {
     json!({
         "name": name,
@@ -273,7 +282,8 @@ fn textured(name: &str, texture: usize, roughness: f32) -> Value {
     })
 }
 
-fn leaves(name: &str, texture: usize) -> Value {
+/// Leaves cut out by the alpha of a texture.
+pub(crate) fn leaves(name: &str, texture: usize) -> Value {
     let mut m = textured(name, texture, 0.85);
     m["alphaMode"] = json!("MASK");
     m["alphaCutoff"] = json!(0.4);
@@ -307,13 +317,7 @@ pub fn install(glb: &mut Glb, sets: &[Encoded]) {
     let white = [1.0; 3];
     for mat in ALL {
         let m = match mat {
-            Mat::Asphalt => {
-                let mut m = surface("asphalt", white, asphalt);
-                m["normalTexture"]["texCoord"] = json!(1);
-                m["occlusionTexture"]["texCoord"] = json!(1);
-                m["pbrMetallicRoughness"]["metallicRoughnessTexture"]["texCoord"] = json!(1);
-                m
-            }
+            Mat::Asphalt => self::asphalt(asphalt),
             Mat::RoadPaint => surface("road-paint", white, road_paint),
             Mat::Setts => surface("setts", white, setts),
             Mat::Slabs => surface("slabs", white, slabs),

@@ -3,6 +3,7 @@
 mod airlight;
 mod artist;
 mod extinction;
+mod mist;
 mod profile;
 mod rates;
 mod sharing;
@@ -14,6 +15,7 @@ pub use extinction::{
     EXTINCTION_EFFICIENCY, extinction_per_m, inscattered, inscattered_f32, obscured, obscured_f32, transmittance,
     transmittance_f32,
 };
+pub use mist::{DRY_EXTINCTION_PER_M, HYGROSCOPICITY, MAX_MIST_HUMIDITY, mist_extinction_per_m};
 pub use profile::{HeightHaze, mean_decay, mean_decay_f32};
 pub use rates::{FIRST_RATE_MM_H, RATE_KNOTS, RateExtinction};
 pub use sharing::{

@@ -1,4 +1,4 @@
-//! Light at a water surface and in a drop: Fresnel, refraction, energy split, radiance.
+//! Light at a water surface and in a drop: Fresnel, refraction, energy split, radiance, rainbows.
 //!
 //! # Accuracy of what a drop shows
 //! Against rays traced through the outline of Beard & Chuang with all inner reflections, relative L1 of the radiance
@@ -16,18 +16,26 @@
 //! rays miss 0.26, 0.28, 0.75 under the overcast sky, three 0.04, 0.07, 0.3. The cheap tier's mean over
 //! the disc (for drops smaller than a pixel) is within 0.08 looking level or up, and up to 0.57 too dark looking down.
 
+mod cloud;
 mod drop_body;
 mod drop_radiance;
 mod energy;
 mod fresnel;
+mod rainbow;
 mod refraction;
 
+pub use cloud::{
+    CLOUD_ASYMMETRY, CLOUD_DROP_RADIUS_M, RAIN_COLUMN_M, cloud_optical_depth, cloud_transmittance, cloud_water_kg_m2,
+};
 pub use drop_body::{DropBody, DropRay};
 pub use drop_radiance::{CHEAP_REFLECTED, CHEAP_REFRACTED, DropLight, DropRays, drop_light, drop_rays_f32};
 pub use energy::{EnergySplit, energy_split, retro_reflection, sphere_order_share};
 pub use fresnel::{
     Polarised, brewster_rad, critical_angle_rad, fresnel, fresnel_f32, fresnel_from_inside, fresnel_polarised,
     hemispherical_mean, hemispherical_mean_inside, normal_reflectance, schlick, schlick_f32,
+};
+pub use rainbow::{
+    BOW_KNOTS, BOW_SPAN_DEG, BOW_STEP_DEG, BowRays, RainbowPhase, RainbowTables, bow_place, water_index,
 };
 pub use refraction::{
     Bow, deviation_rad, deviation_sin_cos_f32, disc_share_within, field_of_view_rad, impact_of_deviation, rainbow,

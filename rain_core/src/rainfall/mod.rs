@@ -11,6 +11,7 @@ mod container;
 mod detail;
 mod drop_sizes;
 mod fall;
+mod far_rain;
 mod field;
 mod fit_flux;
 mod follow;
@@ -43,6 +44,11 @@ pub use drop_sizes::{DropSizes, MAX_BLEND, RainKind, SizeLaw, UnknownRainKind};
 pub use fall::{
     Fall, FallState, MAX_FALL_HEIGHT_M, MAX_FALL_TIME_S, drag_stiffness, fall_f32, quadratic_fall_time_f32,
     quadratic_speed_after_f32,
+};
+pub use far_rain::{
+    FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, FarAccount, FarEye, FarParticle, FarRain,
+    FarRainSettings, FarRainView, MAX_FAR_PARTICLES, cloud_share, far_begin, far_pitch_weight, far_presence,
+    far_profile,
 };
 pub use field::{Drop, FieldMotion, LatticeEye, SOFT_EDGE, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
 pub use follow::{Follow, FollowSettings, FollowShape, heading_margin_rad};

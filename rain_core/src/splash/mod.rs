@@ -43,7 +43,7 @@ pub use crown::{
 };
 pub use events::{ImpactEvent, for_each_impact, hashed_poisson};
 pub use field::{SPLASH_CELL_M, SPLASH_COUNTS, SPLASH_SLOT_S, SPLASH_SLOTS, SplashAnchor, SplashField, SplashMark};
-pub use foot::foot_splash_strength;
+pub use foot::{FOOT_DROPS, FOOT_SPLASH_S, foot_drop, foot_drop_count, foot_sheet, foot_splash_strength};
 pub use impacts::{ImpactFlux, splashes_per_m2_s};
 pub use numbers::{ImpactNumbers, impact_energy_j, impact_momentum_kg_m_s, splash_k, splash_k_f32, water_drop_kg};
 pub use secondary::{Impact, SecondaryDrop, Splash, SplashKind, secondary_drop};

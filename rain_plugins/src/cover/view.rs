@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use super::air::{AirAroundView, Surroundings, judge_air};
 use super::projection::ShearedProjection;
 use crate::rainfall::{RainView, leading_view};
-use crate::render_adapter::{RenderApp, cover_camera, cover_image};
+use crate::render_adapter::{DeferredPrepass, RenderApp, cover_camera, cover_image};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
 use crate::surface::{SceneGeometryPlugin, SurfaceState};
@@ -89,7 +89,13 @@ impl Plugin for CoverPlugin {
             .add_systems(Startup, create_map)
             .add_systems(
                 PostUpdate,
-                (spawn_view, watch_occluders.run_if(map_is_wanted), aim_view, judge_air)
+                (
+                    spawn_view,
+                    follow_deferred,
+                    watch_occluders.run_if(map_is_wanted),
+                    aim_view,
+                    judge_air,
+                )
                     .chain()
                     .in_set(RainViewSystems::Cover),
             )
@@ -138,6 +144,23 @@ fn spawn_view(
     entity.remove::<Clusters>();
     if let Some(layers) = layers {
         entity.insert(layers.clone());
+    }
+}
+
+/// Deferred materials are drawn in deferred prepasses alone, and Bevy's renderer stops at a view with another prepass: the
+/// cover view has one where a view of rain has.
+fn follow_deferred(
+    mut commands: Commands,
+    views: Query<Has<DeferredPrepass>, With<RainView>>,
+    cover: Query<(Entity, Has<DeferredPrepass>), With<RainCoverView>>,
+) {
+    let wanted = views.iter().any(|deferred| deferred);
+    for (entity, deferred) in &cover {
+        if wanted && !deferred {
+            commands.entity(entity).insert(DeferredPrepass);
+        } else if deferred && !wanted {
+            commands.entity(entity).remove::<DeferredPrepass>();
+        }
     }
 }
 

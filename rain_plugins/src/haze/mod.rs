@@ -3,10 +3,18 @@
 //!
 //! It is seen only: no state depends on it. [`HazeSettings`] on a camera with `RainView` sets it up.
 
+mod area_fog;
+mod far_rain;
 mod lamps;
+mod mirror;
 mod settings;
 mod view;
 
-pub use settings::{ArtistFog, HazeSettings, MAX_HAZE_LIMIT_M};
-pub(crate) use view::HazeShot;
+pub use area_fog::AreaFog;
+pub(crate) use far_rain::FarRainShot;
+pub use far_rain::FarRainViewFrame;
+pub(crate) use mirror::haze_mirrors;
+pub use rain_core::rainfall::FarRainSettings;
+pub use settings::{ArtistFog, HazeSettings, HazeSky, MAX_HAZE_LIMIT_M, Mist};
+pub(crate) use view::{BowShot, HazeShot, aim_haze};
 pub use view::{HazeMask, HazePlugin, HazeViewFrame};

@@ -2,6 +2,8 @@
 
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
+use rain_core::haze::{DRY_EXTINCTION_PER_M, HYGROSCOPICITY};
+use rain_core::rainfall::FarRainSettings;
 use rain_render::haze::MAX_HAZE_LAMPS;
 
 /// Longest accepted way through the rain. Units: m.
@@ -18,6 +20,9 @@ pub struct HazeSettings {
     pub efficiency: f32,
     /// Height (world Y) that rain falls from; there is no haze above. Units: m. Domain: ±10⁵. Default: 1000.
     pub cloud_base_m: f32,
+    /// Rain thins out below that height, over this share of what the base is over the eye: bases hang down in showers, and a
+    /// curtain seen from afar has no edge. Units: none. Domain: [0, 1]. Default: 0.4, by eye; 0: a level base.
+    pub cloud_softness: f32,
     /// Longest way through the rain; sky and what lies further away get the haze of this. Units: m. Domain: [10, 10⁵].
     /// Default: 20 000.
     pub limit_m: f32,
@@ -29,6 +34,43 @@ pub struct HazeSettings {
     pub glow: f32,
     /// Fog as an artist sets it, in place of the rain's. Default: none.
     pub artist: Option<ArtistFog>,
+    /// How much of it is drawn as far rain where [`RainView::far_rain`](crate::rainfall::RainView::far_rain) is on.
+    #[reflect(ignore)]
+    pub far_rain: FarRainSettings,
+    /// Haze of the air itself, which grows into mist and fog with the weather's humidity, with or without rain. Default:
+    /// none.
+    pub mist: Option<Mist>,
+}
+
+/// Particles in the air that take up water (Petters & Kreidenweis 2007): haze in dry air, mist near saturation, fog at it.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default)]
+pub struct Mist {
+    /// Extinction of the dry particles. Units: 1/m. Domain: [0, 1]. Default: 0.0001, clean country air.
+    pub dry_per_m: f32,
+    /// Hygroscopicity κ. Units: none. Domain: [0, 2]. Default: 0.3, mixed particles over land; sea salt has 1.2.
+    pub hygroscopicity: f32,
+}
+
+impl Default for Mist {
+    fn default() -> Self {
+        Self {
+            dry_per_m: DRY_EXTINCTION_PER_M as f32,
+            hygroscopicity: HYGROSCOPICITY as f32,
+        }
+    }
+}
+
+/// The open sky that lights a view's haze, where the camera's [`EnvironmentMapLight`](bevy::light::EnvironmentMapLight)
+/// holds what stands about it: rain far away stands under the sky, not among the houses near the eye. Without it haze takes
+/// the camera's map.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component)]
+pub struct HazeSky {
+    /// Prefiltered cube map, as of an `EnvironmentMapLight`.
+    pub specular_map: Handle<Image>,
+    /// Its scale to luminance. Units: cd/m².
+    pub intensity: f32,
 }
 
 /// Fog the artists' way (Lagarde 2013): denser in heavier rain, losing its colour as the rain sets in. Nothing physical.
@@ -65,10 +107,13 @@ impl Default for HazeSettings {
             enabled: true,
             efficiency: 2.0,
             cloud_base_m: 1000.0,
+            cloud_softness: 0.4,
             limit_m: 20_000.0,
             lamps: MAX_HAZE_LAMPS as u32,
             glow: 1.0,
             artist: None,
+            far_rain: FarRainSettings::default(),
+            mist: None,
         }
     }
 }
@@ -81,19 +126,36 @@ impl HazeSettings {
     pub fn validated(self) -> Result<Self, ConfigError> {
         in_range("efficiency", self.efficiency.into(), 1.0, 4.0, "1 to 4")?;
         in_range("cloud_base_m", self.cloud_base_m.into(), -1e5, 1e5, "-1e5 to 1e5 m")?;
+        in_range("cloud_softness", self.cloud_softness.into(), 0.0, 1.0, "0 to 1")?;
         let furthest = f64::from(MAX_HAZE_LIMIT_M);
         in_range("limit_m", self.limit_m.into(), 10.0, furthest, "10 to 1e5 m")?;
         in_range("lamps", self.lamps.into(), 0.0, MAX_HAZE_LAMPS as f64, "0 to 16")?;
         in_range("glow", self.glow.into(), 0.0, 100.0, "0 to 100")?;
+        self.far_rain.validated()?;
         if let Some(fog) = self.artist {
-            in_range("density_per_m", fog.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
-            in_range("gain", fog.gain.into(), 0.0, 1e3, "0 to 1000")?;
-            in_range("desaturation", fog.desaturation.into(), 0.0, 1.0, "0 to 1")?;
-            in_range("transition_s", fog.transition_s.into(), 0.0, 1e6, "0 to 1e6 s")?;
-            let colour = fog.colour.unwrap_or(LinearRgba::BLACK);
-            for value in [colour.red, colour.green, colour.blue] {
-                in_range("colour", value.into(), 0.0, 1e4, "0 to 1e4")?;
-            }
+            fog.validated()?;
+        }
+        if let Some(mist) = self.mist {
+            in_range("dry_per_m", mist.dry_per_m.into(), 0.0, 1.0, "0 to 1 per m")?;
+            in_range("hygroscopicity", mist.hygroscopicity.into(), 0.0, 2.0, "0 to 2")?;
+        }
+        Ok(self)
+    }
+}
+
+impl ArtistFog {
+    /// These settings, if every field lies in its domain.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or outside its domain.
+    pub fn validated(self) -> Result<Self, ConfigError> {
+        in_range("density_per_m", self.density_per_m.into(), 0.0, 10.0, "0 to 10 per m")?;
+        in_range("gain", self.gain.into(), 0.0, 1e3, "0 to 1000")?;
+        in_range("desaturation", self.desaturation.into(), 0.0, 1.0, "0 to 1")?;
+        in_range("transition_s", self.transition_s.into(), 0.0, 1e6, "0 to 1e6 s")?;
+        let colour = self.colour.unwrap_or(LinearRgba::BLACK);
+        for value in [colour.red, colour.green, colour.blue] {
+            in_range("colour", value.into(), 0.0, 1e4, "0 to 1e4")?;
         }
         Ok(self)
     }

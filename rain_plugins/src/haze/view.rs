@@ -2,21 +2,28 @@
 
 use std::sync::Arc;
 
+use bevy::ecs::system::SystemParam;
 use bevy::math::DVec2;
 use bevy::prelude::*;
 use rain_core::haze::{
-    FOG_TABLE_KNOTS, FogFade, FogTable, RateExtinction, artist_fog_amount, extinction_per_m, fog_density,
+    FOG_TABLE_KNOTS, FogFade, FogTable, RateExtinction, artist_fog_amount, extinction_per_m, mist_extinction_per_m,
 };
+use rain_core::optics::RainbowPhase;
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32};
-use rain_core::rainfall::{DrawRange, Lamp, Spectrum};
+use rain_core::rainfall::{DrawRange, FarEye, FarRainSettings, FarRainView, Lamp, Spectrum};
 use rain_core::weather::relative_intensity;
 use rain_ecs::prelude::*;
-use rain_render::haze::HazeFog;
+use rain_render::haze::{HazeFar, HazeFog};
 
+use super::area_fog::{AreaFog, AreaFogs};
+use super::far_rain::{FarRainViewFrame, half_view_rad};
 use super::lamps::glowing;
-use super::settings::HazeSettings;
+use super::mirror::haze_mirrors;
+use super::settings::{HazeSettings, HazeSky};
 use crate::cover::AirAroundView;
-use crate::rainfall::{CardViewFrame, RainView, RainViewFrame, SceneLamps, fill_cards};
+use crate::rainfall::{
+    CardViewFrame, RainView, RainViewFrame, SceneLamps, SoftwareAdapter, ViewMotion, fill_cards, view_volume,
+};
 use crate::render_adapter::let_depth_be_read;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -42,10 +49,26 @@ pub(crate) struct HazeShot {
     pub rates: Arc<RateExtinction>,
     /// Areas packed about the eye, and the weather's rate.
     pub areas: Option<(Arc<AreaFieldF32>, f32)>,
+    /// What is drawn of it as far rain.
+    pub far: Option<HazeFar>,
     pub cloud_m: f32,
+    pub thin_m: f32,
     pub limit_m: f32,
     pub fog: Option<HazeFog>,
     pub lamps: Vec<Lamp>,
+    /// The heaviest rain that counts.
+    pub heaviest: Spectrum,
+    pub mist_per_m: f32,
+    /// Of a mirrored view: the mirror over its eye.
+    pub mirror_m: Option<f32>,
+    pub bow: Option<BowShot>,
+}
+
+/// A view's rainbow.
+#[derive(Clone, Debug)]
+pub(crate) struct BowShot {
+    pub phase: Arc<RainbowPhase>,
+    pub strength: f32,
 }
 
 /// What a table of drawn rain is made from.
@@ -121,31 +144,55 @@ impl HazeViewFrame {
     }
 }
 
+/// The weather's humidity.
+#[derive(SystemParam)]
+pub(crate) struct Humidity<'w, 's> {
+    active: Res<'w, ActiveWeather>,
+    weather: Query<'w, 's, &'static WeatherState>,
+}
+
+impl Humidity<'_, '_> {
+    /// Units: none. 0 without a weather.
+    fn now(&self) -> f64 {
+        let state = self.active.entity().and_then(|entity| self.weather.get(entity).ok());
+        state.map_or(0.0, |state| state.conditions().relative_humidity)
+    }
+}
+
 /// Haze of rain in all [`RainView`]s.
 pub struct HazePlugin;
 
 impl Plugin for HazePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<HazeSettings>()
+            .register_type::<HazeSky>()
+            .register_type::<AreaFog>()
             .init_resource::<AirAroundView>()
             .add_systems(
                 PostUpdate,
                 // After the containers, too: cards come after them.
-                aim_haze.in_set(RainViewSystems::Views).after(fill_cards),
+                (aim_haze, haze_mirrors)
+                    .chain()
+                    .in_set(RainViewSystems::Views)
+                    .after(fill_cards),
             );
         app.register_required_components::<RainView, HazeSettings>();
         app.register_required_components::<RainView, HazeViewFrame>();
+        app.register_required_components::<RainView, FarRainViewFrame>();
     }
 }
 
-fn aim_haze(
+pub(crate) fn aim_haze(
     clock: Res<RainClock>,
     field: Res<RainfallField>,
     report: Res<RainReport>,
     air: Res<AirAroundView>,
+    (seed, software): (Res<RainSeed>, Res<SoftwareAdapter>),
     areas: Option<Res<RainAreas>>,
     mut local: Local<AreaField>,
     mut errors: MessageWriter<RainConfigError>,
+    mut fogs: AreaFogs,
+    humidity: Humidity,
     lights: SceneLamps,
     mut views: Query<(
         (Entity, &RainView, Ref<HazeSettings>, Option<&CardViewFrame>),
@@ -153,10 +200,12 @@ fn aim_haze(
         &mut Camera3d,
         &Projection,
         &GlobalTransform,
-        &RainViewFrame,
+        (&RainViewFrame, &ViewMotion),
         &mut HazeViewFrame,
+        &mut FarRainViewFrame,
     )>,
 ) {
+    errors.write_batch(fogs.faults(areas.as_deref()));
     let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
     let now = clock.now_s() + since_tick;
     let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
@@ -164,10 +213,21 @@ fn aim_haze(
         areas.field_after(since_tick, &mut local);
     }
     let mut any = false;
-    for ((entity, view, settings, cards), camera, mut camera_3d, projection, transform, rain, mut frame) in &mut views {
+    for (
+        (entity, view, settings, cards),
+        camera,
+        mut camera_3d,
+        projection,
+        transform,
+        (rain, motion),
+        mut frame,
+        mut far_frame,
+    ) in &mut views
+    {
         any = true;
         let frame = &mut *frame;
         frame.shot = None;
+        far_frame.clear();
         if settings.is_changed() {
             match settings.validated() {
                 Ok(good) => frame.settings = good,
@@ -191,32 +251,38 @@ fn aim_haze(
         let q = f64::from(settings.efficiency);
         let size = camera.physical_viewport_size().unwrap_or_default();
         let dt = now - std::mem::replace(&mut frame.before_s, now);
-        if let Some(fog) = settings.artist {
-            frame
-                .fade
-                .advance(here.intensity_mm_h > 0.0, dt, fog.transition_s.into());
-        }
         let amount = artist_fog_amount(relative_intensity(here.intensity_mm_h));
-        let density = settings
-            .artist
-            .map(|fog| fog_density(fog.density_per_m.into(), fog.gain.into(), amount));
+        let fog = fogs.at(settings.artist.as_ref(), areas, place, now, amount);
+        if let Some(fog) = &fog {
+            frame.fade.advance(here.intensity_mm_h > 0.0, dt, fog.transition_s);
+        }
+        let mist = settings.mist.map_or(0.0, |mist| {
+            mist_extinction_per_m(humidity.now(), mist.dry_per_m.into(), mist.hygroscopicity.into())
+        });
+        // The haze of the heaviest rain, and what is in its place.
+        let own = extinction_per_m(&heaviest, q) + mist;
+        let densest = fog.as_ref().map_or(own, |mix| {
+            let own = if mix.fog.share < 1.0 { own } else { 0.0 };
+            own.max(mix.fog.density_per_m.into())
+        });
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
         } else if !view.enabled || !settings.enabled {
             Some(SkipReason::Disabled)
-        } else if heaviest.intensity_mm_h <= 0.0 {
+        } else if heaviest.intensity_mm_h <= 0.0 && mist <= 0.0 && fog.is_none() {
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_)) {
             Some(SkipReason::Unsupported)
         } else if air.closed_in == Some(entity) {
             Some(SkipReason::Indoors)
-        } else if density.unwrap_or_else(|| extinction_per_m(&heaviest, q)) * limit < NEGLIGIBLE_DEPTH {
+        } else if densest * limit < NEGLIGIBLE_DEPTH {
             Some(SkipReason::Negligible)
         } else {
             None
         };
         if let Some(reason) = skip {
             report.skipped(PassName::Haze, reason);
+            report.skipped(PassName::FarRain, reason);
             continue;
         }
         let_depth_be_read(&mut camera_3d);
@@ -241,24 +307,75 @@ fn aim_haze(
             }
             (Arc::new(packed), areas.weather_mm_h() as f32)
         });
+        let rates = frame.rates(&field, settings.efficiency);
+        let cloud_m = settings.cloud_base_m - eye.y;
+        let thin_m = settings.cloud_softness * cloud_m.max(0.0);
+        // What particles show is taken off the physical haze alone.
+        let physical = 1.0 - fog.as_ref().map_or(0.0, |mix| f64::from(mix.fog.share));
+        let far_rain = FarRainSettings {
+            share: settings.far_rain.share * physical.max(0.0),
+            ..settings.far_rain
+        };
+        let far = if !view.draws_far_rain(*software) {
+            Err(SkipReason::Disabled)
+        } else if let Some(areas) = areas {
+            let clip_from_view = projection.get_clip_from_view();
+            far_frame.fill(
+                &far_rain,
+                &FarRainView {
+                    eye: FarEye {
+                        eye_m: eye.as_dvec3(),
+                        areas: &local,
+                        weather_mm_h: areas.weather_mm_h(),
+                        rates: &rates,
+                    },
+                    volume: &view_volume(clip_from_view, size, transform, motion, view.exposure_s),
+                    forward: transform.forward().as_dvec3(),
+                    half_view_rad: half_view_rad(clip_from_view, transform.rotation()),
+                    motion: &field.motion_after(since_tick),
+                    seed: seed.0,
+                    cloud_m: cloud_m.into(),
+                    thin_m: thin_m.into(),
+                    limit_m: limit,
+                },
+            )
+        } else {
+            Err(SkipReason::NoRain)
+        };
+        let far = match far {
+            Ok(rain) => Some(HazeFar {
+                share: rain.share as f32,
+                outside_per_m: rain.account.outside_per_m() as f32,
+            }),
+            Err(reason) => {
+                report.skipped(PassName::FarRain, reason);
+                None
+            }
+        };
         frame.shot = Some(HazeShot {
             forward: transform.forward().into(),
             extinction_per_m: extinction_per_m(&here, q) as f32,
             efficiency: settings.efficiency,
             drawn_m: frame.drawn_m(source),
-            rates: frame.rates(&field, settings.efficiency),
+            rates,
             areas: packed,
-            cloud_m: settings.cloud_base_m - eye.y,
+            far,
+            cloud_m,
+            thin_m,
             limit_m: settings.limit_m,
-            fog: settings.artist.zip(density).map(|(fog, density)| HazeFog {
-                density_per_m: density as f32,
-                colour: fog.colour.map(|c| Vec3::new(c.red, c.green, c.blue)),
-                desaturation: fog.desaturation * frame.fade.share() as f32,
+            fog: fog.map(|mix| HazeFog {
+                desaturation: mix.fog.desaturation * frame.fade.share() as f32,
+                ..mix.fog
             }),
             lamps: glowing(&lights, eye, settings.lamps as usize, settings.glow),
+            heaviest,
+            mist_per_m: mist as f32,
+            mirror_m: None,
+            bow: None,
         });
     }
     if !any {
         report.skipped(PassName::Haze, SkipReason::NoView);
+        report.skipped(PassName::FarRain, SkipReason::NoView);
     }
 }

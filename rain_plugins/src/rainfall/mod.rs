@@ -4,6 +4,7 @@ mod cards;
 mod lamps;
 mod lead;
 mod motion;
+mod panes;
 mod settings;
 mod view;
 
@@ -13,6 +14,7 @@ pub use lamps::ViewLamps;
 pub(crate) use lamps::{SceneLamps, keep_strongest, shining};
 pub(crate) use lead::leading_view;
 pub use motion::ViewMotion;
+pub use panes::{SeenThrough, ViewPanes};
 pub use rain_core::rainfall::{
     DetailLaw, FollowSettings, FollowShape, LatticeLevel, LatticeSettings, StreakTextureSettings,
 };

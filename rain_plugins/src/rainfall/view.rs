@@ -16,6 +16,7 @@ use rain_render::rainfall::Shutter;
 use super::cards::{CardViewFrame, LatticeState, fill_cards};
 use super::lamps::{ViewLamps, choose_lamps};
 use super::motion::ViewMotion;
+use super::panes::{SeenThrough, ViewPanes, choose_panes, mark_blended};
 use super::settings::CardSettings;
 use crate::cover::AirAroundView;
 use crate::report::{PassName, RainReport, SkipReason};
@@ -33,7 +34,7 @@ pub const MAX_CONTRAST: f32 = 32.0;
 /// one they end at a hard depth test.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default)]
-#[require(ViewMotion, RainViewFrame, CardViewFrame, ViewLamps)]
+#[require(ViewMotion, RainViewFrame, CardViewFrame, ViewLamps, ViewPanes)]
 pub struct RainView {
     /// Draws rain in this view.
     pub enabled: bool,
@@ -59,6 +60,10 @@ pub struct RainView {
     /// Draws the rain beyond the single drops as cards of many drops each; see [`super::CardSettings`]. `None`: on a GPU,
     /// not on a software adapter, where they cost several times as much as the single drops.
     pub cards: Option<bool>,
+    /// Draws showers that are seen from outside as particles of many drops each, over a haze that is as much thinner; how
+    /// many is set by [`HazeSettings::far_rain`](crate::haze::HazeSettings::far_rain), and without haze there are none. `None`: on
+    /// a GPU, not on a software adapter.
+    pub far_rain: Option<bool>,
 }
 
 impl Default for RainView {
@@ -72,6 +77,7 @@ impl Default for RainView {
             container: None,
             detail: None,
             cards: None,
+            far_rain: None,
         }
     }
 }
@@ -125,6 +131,11 @@ impl RainView {
     pub(super) fn draws_cards(&self, software: SoftwareAdapter) -> bool {
         self.cards.unwrap_or(!software.0)
     }
+
+    /// Whether far rain is drawn.
+    pub(crate) fn draws_far_rain(&self, software: SoftwareAdapter) -> bool {
+        self.far_rain.unwrap_or(!software.0)
+    }
 }
 
 /// What a view draws this frame; extracted to the render world.
@@ -175,14 +186,18 @@ pub struct RainfallPlugin;
 impl Plugin for RainfallPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<RainView>()
+            .register_type::<SeenThrough>()
+            .add_message::<AssetEvent<StandardMaterial>>()
             .init_resource::<SoftwareAdapter>()
             .init_resource::<AirAroundView>()
             .init_resource::<CardSettings>()
             .init_resource::<LatticeState>()
             .add_systems(
                 PostUpdate,
-                (fill_containers, choose_lamps, fill_cards)
-                    .chain()
+                (
+                    (fill_containers, choose_lamps, fill_cards).chain(),
+                    (mark_blended, choose_panes).chain(),
+                )
                     .in_set(RainViewSystems::Views),
             );
     }

@@ -19,7 +19,7 @@ use rain_render::water_map::WaterMapPlace;
 
 use super::{RainMasks, WaveLevels};
 use crate::cover::CoverMap;
-use crate::rainfall::{RainViewFrame, ViewLamps, ViewMotion};
+use crate::rainfall::{RainViewFrame, ViewLamps, ViewMotion, ViewPanes};
 use crate::surface::{
     GroundFilms, GroundMap, MapHandover, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages,
     WaterLevels, WaveNormalMaps, wind_slope_variance,
@@ -38,6 +38,7 @@ pub(super) struct ExtractedRainView {
     pub environment: Option<(AssetId<Image>, f32)>,
     pub masks: Option<RainMasks>,
     pub lamps: ViewLamps,
+    pub panes: ViewPanes,
 }
 
 /// What all views share.
@@ -227,6 +228,7 @@ pub(super) fn extract_rain(
             Option<&EnvironmentMapLight>,
             Option<&RainMasks>,
             &ViewLamps,
+            &ViewPanes,
         )>,
     >,
 ) {
@@ -273,7 +275,7 @@ pub(super) fn extract_rain(
             shown: surface.shown,
         }),
     });
-    for (entity, frame, camera, environment, masks, lamps) in &views {
+    for (entity, frame, camera, environment, masks, lamps, panes) in &views {
         let mut entity = commands.entity(entity);
         if !camera.is_active {
             entity.remove::<ExtractedRainView>();
@@ -288,6 +290,7 @@ pub(super) fn extract_rain(
             environment: environment.map(|e| (e.specular_map.id(), e.intensity)),
             masks: masks.cloned(),
             lamps: lamps.clone(),
+            panes: panes.clone(),
         });
     }
 }

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use bevy::math::{Mat4, Vec4};
+use bevy::light::EnvironmentMapLight;
+use bevy::math::{Mat3, Mat4, Vec4};
 use bevy::pbr::AtmosphereSettings;
 use bevy::prelude::*;
 use bevy::render::Extract;
@@ -15,13 +16,14 @@ use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_core::rainfall::Lamp;
 use rain_render::haze::{
-    HazeAreas, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas, encode_haze_coverage,
+    HazeAreas, HazeBow, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    encode_haze_coverage,
 };
 
-use super::extract::{ExtractedRainScene, ExtractedRainView};
+use super::extract::ExtractedRainScene;
 use super::prepare::view_lighting;
 use super::record::{cleared, draw_within};
-use crate::haze::{HazeMask, HazeShot, HazeViewFrame};
+use crate::haze::{HazeMask, HazeShot, HazeSky, HazeViewFrame};
 use crate::report::{PassName, RainReport};
 
 /// A lamp whose intensity times extinction (exposed) is less glows by less than the darkest 8-bit step (3e-4) half a metre
@@ -33,6 +35,8 @@ const LEAST_GLOW: f32 = 6e-4;
 pub(super) struct ExtractedHazeView {
     shot: Option<HazeShot>,
     mask: Option<Handle<Image>>,
+    /// Prefiltered cube map and its scale to cd/m².
+    pub(super) environment: Option<(AssetId<Image>, f32)>,
     /// Bevy's atmosphere draws its sky at a moment that nobody else can name: haze then comes after what is transparent.
     over_sky: bool,
 }
@@ -68,11 +72,13 @@ pub(super) fn extract_haze(
             &HazeViewFrame,
             &Camera,
             Option<&HazeMask>,
+            Option<&EnvironmentMapLight>,
+            Option<&HazeSky>,
             Has<AtmosphereSettings>,
         )>,
     >,
 ) {
-    for (entity, frame, camera, mask, over_sky) in &views {
+    for (entity, frame, camera, mask, environment, sky, over_sky) in &views {
         let mut entity = commands.entity(entity);
         if !camera.is_active {
             entity.remove::<ExtractedHazeView>();
@@ -81,6 +87,9 @@ pub(super) fn extract_haze(
         entity.insert(ExtractedHazeView {
             shot: frame.shot.clone(),
             mask: mask.map(|mask| mask.0.clone()),
+            environment: sky
+                .map(|s| (s.specular_map.id(), s.intensity))
+                .or(environment.map(|e| (e.specular_map.id(), e.intensity))),
             over_sky,
         });
     }
@@ -97,7 +106,6 @@ pub(super) fn prepare_haze(
         &ExtractedView,
         &ExtractedCamera,
         &ExtractedHazeView,
-        &ExtractedRainView,
         &ViewDepthTexture,
         &Msaa,
     )>,
@@ -106,20 +114,20 @@ pub(super) fn prepare_haze(
     let hazes = &mut *hazes;
     let device = device.wgpu_device();
     hazes.views.retain(|entity, _| views.contains(*entity));
-    for (entity, view, camera, haze, rain, depth, msaa) in &views {
+    for (entity, view, camera, haze, depth, msaa) in &views {
         let Some(shot) = &haze.shot else { continue };
         let samples = msaa.samples();
         hazes
             .gpu
             .prepare_pipelines(device, view.target_format, samples, haze.mask.is_some());
-        let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
+        let environment = haze.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         // In the heaviest rain of the view; what does not show there shows nowhere.
         let densest = shot.rates.ln_per_m.last().map_or(0.0, |ln| ln.exp());
         let extinction = if shot.areas.is_some() {
             densest
         } else {
             shot.extinction_per_m
-        };
+        } + shot.mist_per_m;
         let exposed = |lamp: &Lamp| Lamp {
             intensity: lamp.intensity * camera.exposure,
             ..*lamp
@@ -130,11 +138,11 @@ pub(super) fn prepare_haze(
             .map(exposed)
             .filter(|lamp| lamp.intensity.max_element() * extinction > LEAST_GLOW)
             .collect();
-        let rotation = view.world_from_view.rotation();
+        // With the mirror, if it is one.
+        let turned = Mat3::from(view.world_from_view.affine().matrix3);
         let input = HazeInput {
-            clip_from_eye: view.clip_from_view * Mat4::from_quat(rotation.inverse()),
+            clip_from_eye: view.clip_from_view * Mat4::from_mat3(turned.inverse()),
             forward: shot.forward,
-            near_m: view.clip_from_view.w_axis.z,
             viewport_px: Vec4::from_array(view.viewport.as_vec4().to_array()),
             lighting: view_lighting(&scene, environment, camera.exposure),
             extinction_per_m: shot.extinction_per_m,
@@ -145,9 +153,17 @@ pub(super) fn prepare_haze(
                 packed,
                 weather_mm_h: *weather,
             }),
+            far: shot.far,
             cloud_m: shot.cloud_m,
+            thin_m: shot.thin_m,
             limit_m: shot.limit_m,
             fog: shot.fog,
+            mist_per_m: shot.mist_per_m,
+            mirror_m: shot.mirror_m,
+            bow: shot.bow.as_ref().map(|bow| HazeBow {
+                phase: &bow.phase,
+                strength: bow.strength,
+            }),
             lamps: &lamps,
         };
         let textures = HazeTextures {

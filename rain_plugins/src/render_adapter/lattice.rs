@@ -15,7 +15,9 @@ use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_core::rainfall::{PackedStreaks, StreakTextureSettings};
 use rain_render::cover::open_sky;
-use rain_render::lattice::{LatticeGpu, LatticeInput, LatticeViewGpu, encode_lattice, encode_lattice_coverage};
+use rain_render::lattice::{
+    LatticeGpu, LatticeInput, LatticeViewGpu, encode_lattice, encode_lattice_behind, encode_lattice_coverage,
+};
 use rain_render::rainfall::RainfallTextures;
 use rain_render::streak_textures::{StreakArray, StreakTextureGpu, encode_streak_textures};
 
@@ -153,9 +155,14 @@ pub(super) fn prepare_cards(
             _ => None,
         };
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
-        lattice
-            .gpu
-            .prepare_pipelines(device, view.target_format, msaa.samples(), rain.masks.is_some());
+        let panes = rain.panes.seen_from(view.world_from_view.translation());
+        lattice.gpu.prepare_pipelines(
+            device,
+            view.target_format,
+            msaa.samples(),
+            rain.masks.is_some(),
+            !panes.is_empty(),
+        );
         let lamps = rain
             .lamps
             .seen_from(view.world_from_view.translation(), camera.exposure);
@@ -167,6 +174,7 @@ pub(super) fn prepare_cards(
             lighting: view_lighting(&scene, environment, camera.exposure),
             fog: Vec3::ZERO,
             lamps: &lamps,
+            panes: &panes,
             cover: match (cover.and_then(|c| c.placement), cover_image) {
                 (Some(placement), Some(_)) => placement.params(eye),
                 _ => open_sky(),
@@ -197,7 +205,31 @@ pub(super) fn streak_textures(mut lattice: ResMut<LatticeViews>, report: Res<Rai
     }
 }
 
-/// Draws a view's cards over its colour target. What single streaks cover comes after.
+/// Draws a view's cards behind glass, before what is transparent.
+pub(super) fn lattice_behind_glass(
+    view: ViewQuery<(
+        Entity,
+        &ExtractedView,
+        &ExtractedCardView,
+        &ViewTarget,
+        &ViewDepthTexture,
+        &Msaa,
+    )>,
+    lattice: Res<LatticeViews>,
+    mut ctx: RenderContext,
+) {
+    let (entity, view, _, target, depth, msaa) = view.into_inner();
+    let of_view = lattice.views.get(&entity);
+    let Some(view_gpu) = of_view.filter(|view| view.cards() > 0 && view.panes() > 0) else {
+        return;
+    };
+    let colour = target.get_color_attachment();
+    let mut pass = over_scene(ctx.command_encoder(), "rain_lattice_behind_glass", colour, depth);
+    draw_within(&mut pass, view.viewport);
+    encode_lattice_behind(&mut pass, &lattice.gpu, view_gpu, view.target_format, msaa.samples());
+}
+
+/// Draws a view's cards over its colour target, but those behind glass. What single streaks cover comes after.
 pub(super) fn lattice(
     view: ViewQuery<(
         Entity,

@@ -6,6 +6,7 @@
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
 //! | `haze.rs` | all three for haze |
+//! | `far_rain.rs` | all three for far rain |
 //! | `lattice.rs` | all three for cards and their streak textures |
 //! | `lightning.rs` | the material of lightning |
 //! | `splash.rs` | all three for splashes |
@@ -13,6 +14,7 @@
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
 mod extract;
+mod far_rain;
 mod haze;
 mod lattice;
 mod lens;
@@ -27,7 +29,8 @@ use bevy::asset::RenderAssetUsages;
 use bevy::camera::{Exposure, Hdr, RenderTarget, SubCameraView};
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
-pub(crate) use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::core_pipeline::oit::resolve::node::oit_resolve;
+pub(crate) use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass};
 use bevy::core_pipeline::schedule::{Core3d, camera_driver};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
@@ -329,6 +332,7 @@ impl Plugin for RainRenderPlugin {
             .init_gpu_resource::<prepare::RainGpu>()
             .init_gpu_resource::<splash::SplashViews>()
             .init_gpu_resource::<haze::HazeViews>()
+            .init_gpu_resource::<far_rain::FarRainViews>()
             .init_gpu_resource::<lattice::LatticeViews>()
             .init_resource::<lattice::ExtractedStreaks>()
             .init_gpu_resource::<lens::LensViews>()
@@ -342,6 +346,7 @@ impl Plugin for RainRenderPlugin {
                     extract::extract_map,
                     splash::extract_splashes,
                     haze::extract_haze,
+                    far_rain::extract_far_rain,
                     lattice::extract_cards,
                     lens::extract_lenses,
                 ),
@@ -351,6 +356,7 @@ impl Plugin for RainRenderPlugin {
                 (
                     (
                         haze::prepare_haze,
+                        far_rain::prepare_far_rain,
                         splash::prepare_splashes,
                         lattice::prepare_cards,
                         lens::prepare_lenses,
@@ -358,7 +364,7 @@ impl Plugin for RainRenderPlugin {
                     )
                         .chain()
                         .in_set(RenderSystems::PrepareBindGroups),
-                    wave_levels::show_levels.in_set(RenderSystems::Cleanup),
+                    (wave_levels::show_levels, splash::count_splashes).in_set(RenderSystems::Cleanup),
                 ),
             )
             .add_systems(
@@ -386,10 +392,28 @@ impl Plugin for RainRenderPlugin {
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transmissive_pass_3d)
                         .before(main_transparent_pass_3d),
-                    (haze::haze_over_sky, splash::splash, lattice::lattice, record::rainfall)
+                    (
+                        splash::splash_behind_glass,
+                        lattice::lattice_behind_glass,
+                        record::rainfall_behind_glass,
+                    )
                         .chain()
                         .in_set(Core3dSystems::MainPass)
-                        .after(main_transparent_pass_3d),
+                        .after(haze::haze_behind_glass)
+                        .after(main_transmissive_pass_3d)
+                        .before(main_transparent_pass_3d),
+                    (
+                        haze::haze_over_sky,
+                        far_rain::far_rain,
+                        splash::splash,
+                        lattice::lattice,
+                        record::rainfall,
+                    )
+                        .chain()
+                        .in_set(Core3dSystems::MainPass)
+                        .after(main_transparent_pass_3d)
+                        // Transparent fragments that are sorted by pixel reach the picture here.
+                        .after(oit_resolve),
                     lens::lens
                         .after(Core3dSystems::MainPass)
                         .before(Core3dSystems::EarlyPostProcess),

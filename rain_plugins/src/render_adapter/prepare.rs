@@ -25,6 +25,7 @@ use rain_render::water_map::{WaterMapGpu, WaterMapInput, WaterMapPasses};
 use rain_render::waves::{WaveTileGpu, WavesGpu};
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedSurface, ExtractedWaves};
+use super::far_rain::FarRainViews;
 use super::haze::HazeViews;
 use super::lattice::LatticeViews;
 use super::lens::LensViews;
@@ -326,7 +327,13 @@ pub(super) fn prepare_rain(
     images: Res<RenderAssets<GpuImage>>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     report: Res<RainReport>,
-    (splashes, hazes, cards, lenses): (Res<SplashViews>, Res<HazeViews>, Res<LatticeViews>, Res<LensViews>),
+    (splashes, hazes, far_rain, cards, lenses): (
+        Res<SplashViews>,
+        Res<HazeViews>,
+        Res<FarRainViews>,
+        Res<LatticeViews>,
+        Res<LensViews>,
+    ),
     waves: Res<ExtractedWaves>,
     mut map: ResMut<ExtractedMap>,
     views: Query<(
@@ -407,7 +414,7 @@ pub(super) fn prepare_rain(
                 &queue,
                 clip_from_eye.inverse(),
                 near,
-                size,
+                view.viewport.as_vec4(),
                 surface_params(eye),
                 depth,
                 &cover.texture_view,
@@ -417,8 +424,14 @@ pub(super) fn prepare_rain(
             gpu.mask_bind_groups.insert(entity, bind_group);
         }
         let Some(shutter) = rain.shutter else { continue };
-        gpu.rainfall
-            .prepare_pipelines(device, view.target_format, msaa.samples(), rain.masks.is_some());
+        let panes = rain.panes.seen_from(eye);
+        gpu.rainfall.prepare_pipelines(
+            device,
+            view.target_format,
+            msaa.samples(),
+            rain.masks.is_some(),
+            !panes.is_empty(),
+        );
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
         let lamps = rain.lamps.seen_from(eye, camera.exposure);
@@ -437,6 +450,7 @@ pub(super) fn prepare_rain(
             },
             lighting: view_lighting(&scene, environment, camera.exposure),
             lamps: &lamps,
+            panes: &panes,
             cover: cover_at(eye.as_dvec3()),
         };
         let textures = RainfallTextures {
@@ -466,6 +480,7 @@ pub(super) fn prepare_rain(
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
             + splashes.memory_bytes()
             + hazes.memory_bytes()
+            + far_rain.memory_bytes()
             + cards.memory_bytes()
             + lenses.memory_bytes(),
     );

@@ -10,7 +10,7 @@ use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::masks::MaskTargets;
-use rain_render::rainfall::{encode_coverage, encode_draw, encode_project};
+use rain_render::rainfall::{RainfallViewGpu, encode_behind, encode_coverage, encode_draw, encode_project};
 use rain_render::reflection::encode_reflection_mips;
 
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedWaves};
@@ -185,7 +185,46 @@ pub(super) fn draw_within(pass: &mut wgpu::RenderPass, viewport: UVec4) {
     pass.set_viewport(x, y, width, height, 0.0, 1.0);
 }
 
-/// Projects and draws a view's streaks over its colour target, and its masks where somebody asked for them.
+/// Projects this frame's drops.
+fn project(ctx: &mut RenderContext, gpu: &RainGpu, view_gpu: &RainfallViewGpu) {
+    let recorder = ctx.diagnostic_recorder();
+    let recorder = recorder.as_deref();
+    let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("rain_rainfall_project"),
+        timestamp_writes: None,
+    });
+    let span = recorder.pass_span(&mut pass, "rain_rainfall_project");
+    encode_project(&mut pass, &gpu.rainfall, view_gpu);
+    span.end(&mut pass);
+}
+
+/// Projects a view's streaks and draws those behind glass, before what is transparent; nothing where there is no glass.
+pub(super) fn rainfall_behind_glass(
+    view: ViewQuery<(
+        Entity,
+        &ExtractedView,
+        &ExtractedRainView,
+        &ViewTarget,
+        &ViewDepthTexture,
+        &Msaa,
+    )>,
+    gpu: Res<RainGpu>,
+    mut ctx: RenderContext,
+) {
+    let (entity, view, rain, target, depth, msaa) = view.into_inner();
+    let of_view = gpu.views.get(&entity).filter(|_| rain.shutter.is_some());
+    let Some(view_gpu) = of_view.filter(|v| v.drops() > 0 && v.panes() > 0) else {
+        return;
+    };
+    project(&mut ctx, &gpu, view_gpu);
+    let colour = target.get_color_attachment();
+    let mut pass = over_scene(ctx.command_encoder(), "rain_rainfall_behind_glass", colour, depth);
+    draw_within(&mut pass, view.viewport);
+    encode_behind(&mut pass, &gpu.rainfall, view_gpu, view.target_format, msaa.samples());
+}
+
+/// Projects a view's streaks, if that has not been done, and draws them over its colour target, but those behind glass; and
+/// its masks where somebody asked for them.
 pub(super) fn rainfall(
     view: ViewQuery<(
         Entity,
@@ -202,23 +241,17 @@ pub(super) fn rainfall(
     mut ctx: RenderContext,
 ) {
     let (entity, view, rain, target, depth, msaa) = view.into_inner();
-    let recorder = ctx.diagnostic_recorder();
-    let recorder = recorder.as_deref();
     let view_gpu = gpu
         .views
         .get(&entity)
         .filter(|v| rain.shutter.is_some() && v.drops() > 0);
 
     if let Some(view_gpu) = view_gpu {
-        let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("rain_rainfall_project"),
-            timestamp_writes: None,
-        });
-        let span = recorder.pass_span(&mut pass, "rain_rainfall_project");
-        encode_project(&mut pass, &gpu.rainfall, view_gpu);
-        span.end(&mut pass);
-        drop(pass);
-
+        if view_gpu.panes() == 0 {
+            project(&mut ctx, &gpu, view_gpu);
+        }
+        let recorder = ctx.diagnostic_recorder();
+        let recorder = recorder.as_deref();
         let mut pass = over_scene(
             ctx.command_encoder(),
             "rain_rainfall",

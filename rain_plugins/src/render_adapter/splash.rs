@@ -1,6 +1,7 @@
 //! Splashes: extraction, uploads and commands of each view.
 
 use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::math::Vec2;
@@ -14,10 +15,10 @@ use bevy::render::sync_world::RenderEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::cover::open_sky;
-use rain_render::gpu_types::LevelMapParams;
+use rain_render::gpu_types::{LevelMapParams, SplashDraw};
 use rain_render::splash::{
-    SplashGpu, SplashInput, SplashTextures, SplashViewGpu, encode_splash_coverage, encode_splash_draw,
-    encode_splash_make,
+    SplashGpu, SplashInput, SplashTextures, SplashViewGpu, StepSplash, encode_splash_behind, encode_splash_coverage,
+    encode_splash_draw, encode_splash_make,
 };
 
 use super::extract::{ExtractedRainScene, ExtractedRainView};
@@ -38,6 +39,61 @@ pub(super) struct ExtractedSplashView {
 pub(super) struct SplashViews {
     gpu: SplashGpu,
     views: HashMap<Entity, SplashViewGpu>,
+    counts: Counts,
+}
+
+/// Counts on their way back from the GPU; while all of them are, frames go uncounted.
+const COUNTS_UNDER_WAY: usize = 8;
+
+/// Reads back how many parts the draws had; nobody waits for it.
+#[derive(Default)]
+struct Counts {
+    made: usize,
+    /// Copied to in this frame.
+    copied: Vec<wgpu::Buffer>,
+    free: Arc<Mutex<Vec<wgpu::Buffer>>>,
+}
+
+impl Counts {
+    /// Copies a view's draw arguments into a buffer that can be read, if one is free.
+    fn copy(&mut self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, view: &SplashViewGpu) {
+        let free = self.free.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let buffer = match free {
+            Some(buffer) => buffer,
+            None if self.made < COUNTS_UNDER_WAY => {
+                self.made += 1;
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("rain splash count"),
+                    size: size_of::<SplashDraw>() as u64,
+                    usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                })
+            }
+            None => return,
+        };
+        encoder.copy_buffer_to_buffer(view.arguments(), 0, &buffer, 0, buffer.size());
+        self.copied.push(buffer);
+    }
+
+    /// The frame's commands are submitted: its counts go to the report when they come.
+    fn read(&mut self, report: &RainReport) {
+        for buffer in self.copied.drain(..) {
+            let (read, report, free) = (buffer.clone(), report.clone(), self.free.clone());
+            buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+                if result.is_ok() {
+                    let words: Vec<SplashDraw> = bytemuck::pod_collect_to_vec(&read.slice(..).get_mapped_range());
+                    read.unmap();
+                    report.splashes(words[0].vertices / 6);
+                    free.lock().unwrap_or_else(PoisonError::into_inner).push(read);
+                }
+            });
+        }
+    }
+}
+
+/// Hands this frame's counts to the report.
+pub(super) fn count_splashes(mut splashes: ResMut<SplashViews>, report: Res<RainReport>) {
+    splashes.counts.read(&report);
 }
 
 impl FromWorld for SplashViews {
@@ -45,6 +101,7 @@ impl FromWorld for SplashViews {
         Self {
             gpu: SplashGpu::new(world.resource::<RenderDevice>().wgpu_device()),
             views: HashMap::new(),
+            counts: Counts::default(),
         }
     }
 }
@@ -109,9 +166,21 @@ pub(super) fn prepare_splashes(
             _ => None,
         };
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
-        splashes
-            .gpu
-            .prepare_pipelines(device, view.target_format, msaa.samples(), splash.mask.is_some());
+        let origin = view.world_from_view.translation();
+        let lamps = rain.lamps.seen_from(origin, camera.exposure);
+        let panes = rain.panes.seen_from(origin);
+        let from_eye = |step: &StepSplash| StepSplash {
+            place_m: step.place_m - origin,
+            ..*step
+        };
+        let feet: Vec<StepSplash> = shot.steps.iter().map(from_eye).collect();
+        splashes.gpu.prepare_pipelines(
+            device,
+            view.target_format,
+            msaa.samples(),
+            splash.mask.is_some(),
+            !panes.is_empty(),
+        );
         let input = SplashInput {
             field: &shot.field,
             anchor: shot.anchor,
@@ -130,6 +199,9 @@ pub(super) fn prepare_splashes(
             film_mm: surface.map_or(0.0, |s| s.state.y),
             capacity: shot.capacity,
             lighting: view_lighting(&scene, environment, camera.exposure),
+            lamps: &lamps,
+            panes: &panes,
+            feet: &feet,
             cover: match (cover.and_then(|c| c.placement), cover_image) {
                 (Some(placement), Some(_)) => placement.params(eye),
                 _ => open_sky(),
@@ -153,8 +225,21 @@ pub(super) fn prepare_splashes(
     }
 }
 
-/// Makes and draws a view's splashes over its colour target, and their mask where somebody asked for it.
-pub(super) fn splash(
+/// Finds this frame's splashes.
+fn make(ctx: &mut RenderContext, gpu: &SplashGpu, view_gpu: &SplashViewGpu) {
+    let recorder = ctx.diagnostic_recorder();
+    let recorder = recorder.as_deref();
+    let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("rain_splash_make"),
+        timestamp_writes: None,
+    });
+    let span = recorder.pass_span(&mut pass, "rain_splash_make");
+    encode_splash_make(&mut pass, gpu, view_gpu);
+    span.end(&mut pass);
+}
+
+/// Makes a view's splashes and draws those behind glass, before what is transparent; nothing where there is no glass.
+pub(super) fn splash_behind_glass(
     view: ViewQuery<(
         Entity,
         &ExtractedView,
@@ -164,24 +249,49 @@ pub(super) fn splash(
         &Msaa,
     )>,
     splashes: Res<SplashViews>,
+    mut ctx: RenderContext,
+) {
+    let (entity, view, splash, target, depth, msaa) = view.into_inner();
+    let of_view = splashes.views.get(&entity).filter(|_| splash.shot.is_some());
+    let Some(view_gpu) = of_view.filter(|v| v.panes() > 0) else {
+        return;
+    };
+    make(&mut ctx, &splashes.gpu, view_gpu);
+    let colour = target.get_color_attachment();
+    let mut pass = over_scene(ctx.command_encoder(), "rain_splash_behind_glass", colour, depth);
+    draw_within(&mut pass, view.viewport);
+    encode_splash_behind(&mut pass, &splashes.gpu, view_gpu, view.target_format, msaa.samples());
+}
+
+/// Makes a view's splashes, if that has not been done, and draws them over its colour target, but those behind glass; and
+/// their mask where somebody asked for it.
+pub(super) fn splash(
+    view: ViewQuery<(
+        Entity,
+        &ExtractedView,
+        &ExtractedSplashView,
+        &ViewTarget,
+        &ViewDepthTexture,
+        &Msaa,
+    )>,
+    mut splashes: ResMut<SplashViews>,
+    device: Res<RenderDevice>,
     images: Res<RenderAssets<GpuImage>>,
     report: Res<RainReport>,
     mut ctx: RenderContext,
 ) {
     let (entity, view, splash, target, depth, msaa) = view.into_inner();
+    let splashes = &mut *splashes;
     let view_gpu = splashes.views.get(&entity).filter(|_| splash.shot.is_some());
-    let recorder = ctx.diagnostic_recorder();
-    let recorder = recorder.as_deref();
     if let Some(view_gpu) = view_gpu {
-        let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("rain_splash_make"),
-            timestamp_writes: None,
-        });
-        let span = recorder.pass_span(&mut pass, "rain_splash_make");
-        encode_splash_make(&mut pass, &splashes.gpu, view_gpu);
-        span.end(&mut pass);
-        drop(pass);
-
+        if view_gpu.panes() == 0 {
+            make(&mut ctx, &splashes.gpu, view_gpu);
+        }
+        splashes
+            .counts
+            .copy(device.wgpu_device(), ctx.command_encoder(), view_gpu);
+        let recorder = ctx.diagnostic_recorder();
+        let recorder = recorder.as_deref();
         let mut pass = over_scene(
             ctx.command_encoder(),
             "rain_splash",

@@ -1,7 +1,9 @@
 //! Rain areas of a scenario.
 
 use rain_core::error::{ConfigError, shown};
-use rain_core::rainfall::areas::{AreaError, AreaFade, AreaKey, AreaMotion, AreaRain, AreaSettings, AreaShape};
+use rain_core::rainfall::areas::{
+    AreaError, AreaFade, AreaKey, AreaMotion, AreaRain, AreaSettings, AreaShape, DensityMap,
+};
 use serde::{Deserialize, Serialize};
 
 /// Most areas of a scenario.
@@ -75,6 +77,33 @@ pub struct AreaPathKey {
     pub moved: [f64; 2],
 }
 
+/// What is painted in an area: a digit for each cell, from `0`, no rain, to `9`, all of it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Painted {
+    /// Size of the rectangle about the centre (x, z). Units: m. Domain: each [0.1, 1 000 000]. Required.
+    pub size_m: [f64; 2],
+    /// Rows of digits from −z on, 2 to 128, each of as many digits from −x on. Required.
+    pub rows: Vec<String>,
+}
+
+impl Painted {
+    fn map(&self) -> Result<DensityMap, String> {
+        let width = self.rows.first().map_or(0, |row| row.chars().count());
+        let mut values = Vec::with_capacity(width * self.rows.len());
+        for row in &self.rows {
+            if row.chars().count() != width {
+                return Err(format!("rows of {width} and {} digits", row.chars().count()));
+            }
+            for digit in row.chars() {
+                let share = digit.to_digit(10).ok_or_else(|| format!("{digit:?} in a row"))?;
+                values.push((share * 255 / 9) as u8);
+            }
+        }
+        DensityMap::new(self.size_m.into(), [width, self.rows.len()], values).map_err(|error| error.to_string())
+    }
+}
+
 /// A rain area.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -93,6 +122,8 @@ pub struct Area {
     pub velocity_m_s: [f64; 2],
     /// It moves along this path instead. Times rise strictly. Default: none.
     pub path: Vec<AreaPathKey>,
+    /// How much of its rain falls where. Default: all of it everywhere.
+    pub density: Option<Painted>,
     /// Its rain begins. Units: s. Default: it is there from the start.
     pub start_s: Option<f64>,
     /// It is at full strength so long after that. Units: s. Default: 0.
@@ -111,6 +142,7 @@ impl Default for Area {
             shape: Shape::default(),
             rain: Rain::OfWeather(1.0),
             transition_m: 20.0,
+            density: None,
             velocity_m_s: [0.0; 2],
             path: Vec::new(),
             start_s: None,
@@ -144,6 +176,8 @@ impl Area {
                 Rain::Scale(factor) => AreaRain::Scale(factor),
             },
             transition_m: self.transition_m,
+            // What cannot be painted is refused by the check.
+            density: self.density.as_ref().and_then(|painted| painted.map().ok()),
             motion: if self.path.is_empty() {
                 AreaMotion::Drift {
                     velocity_m_s: self.velocity_m_s.into(),
@@ -176,6 +210,13 @@ impl Area {
         let wrong = |field: &str, value: String, allowed: &str| Err((field.to_owned(), value, allowed.to_owned()));
         if !self.path.is_empty() && self.velocity_m_s != [0.0; 2] {
             return wrong("path", "given beside velocity_m_s".into(), "one of them");
+        }
+        if let Some(Err(error)) = self.density.as_ref().map(Painted::map) {
+            return wrong(
+                "density",
+                error,
+                "2 to 128 rows of as many digits on 0.1 to 1 000 000 m",
+            );
         }
         match self.settings().check() {
             Ok(()) => Ok(()),

@@ -461,8 +461,13 @@ pub struct RainSettings {
     pub cloud_base_m: f64,
     /// Gain on the glow of lamps in the haze. Units: none. Domain: [0, 100]; 1 is physical. Default: 1.
     pub glow: f64,
+    /// Gain on the light of rainbows, which a sun behind the eye makes in the haze. Units: none. Domain: [0, 100]; 1 is
+    /// physical, 0 none. Default: 0.
+    pub rainbow: f64,
     /// Whether rain beyond the single drops is drawn, as cards of many. Default: on a GPU, not on a software adapter.
     pub cards: Option<bool>,
+    /// Whether showers seen from outside are drawn as particles over their haze. Default: on a GPU, not on a software adapter.
+    pub far_rain: Option<bool>,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -503,7 +508,9 @@ impl Default for RainSettings {
             haze: true,
             cloud_base_m: 1000.0,
             glow: 1.0,
+            rainbow: 0.0,
             cards: None,
+            far_rain: None,
             lens: Lens::Off,
             look: WetLook::Physical,
         }
@@ -619,6 +626,8 @@ pub struct Outputs {
     pub masks: Vec<Mask>,
     /// Whether `contact.png` is written: all captures small, with captions. Default: true.
     pub contact_sheet: bool,
+    /// Whether `frame_0000_above.png` … are written: each capture's drops and far rain from above. Default: false.
+    pub above: bool,
     /// Whether `timeline.png` is written: intensity, wetness, level and budget over time. Default: true.
     pub timeline: bool,
 }
@@ -630,6 +639,7 @@ impl Default for Outputs {
             frames: true,
             masks: Vec::new(),
             contact_sheet: true,
+            above: false,
             timeline: true,
         }
     }

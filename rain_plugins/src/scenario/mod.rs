@@ -14,6 +14,7 @@
 //! | `masks.rs`, `contact.rs`, `plot.rs`, `font.rs`, `report.rs`, `output.rs` | the results |
 //! | `expect.rs`, `timeline.rs` | what was expected and what came out |
 
+pub mod above;
 pub mod areas;
 mod captures;
 pub mod contact;

@@ -32,6 +32,12 @@ pub fn frame_name(index: usize) -> String {
     format!("frame_{index:04}.png")
 }
 
+/// Name of a capture's rain from above: `frame_0007_above.png`.
+#[must_use]
+pub fn above_name(index: usize) -> String {
+    format!("frame_{index:04}_above.png")
+}
+
 /// Name of a capture's mask: `frame_0007_rain.png`.
 #[must_use]
 pub fn mask_name(index: usize, mask: super::file::Mask) -> String {
@@ -149,7 +155,7 @@ fn is_ours(name: &str) -> bool {
     let (number, mask) = stem.split_once('_').map_or((stem, None), |(n, m)| (n, Some(m)));
     number.len() >= 4
         && number.bytes().all(|b| b.is_ascii_digit())
-        && mask.is_none_or(|m| ["rain", "wet", "depth", "water"].contains(&m))
+        && mask.is_none_or(|m| ["rain", "wet", "depth", "water", "above"].contains(&m))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// Names of passes, in the order of a frame.
-pub const PASS_NAMES: [&str; 13] = [
+pub const PASS_NAMES: [&str; 15] = [
     "cover",
     "surface",
     "ripples",
@@ -19,6 +19,8 @@ pub const PASS_NAMES: [&str; 13] = [
     "canopy",
     "wheels",
     "haze",
+    "far_rain",
+    "rainbow",
     "lens",
 ];
 
@@ -105,7 +107,7 @@ pub struct Counts {
     pub drops: Tally,
     /// Billboards of many drops.
     pub billboards: Tally,
-    /// Splashes.
+    /// Crowns and thrown drops of splashes, counted by the GPU that draws them.
     pub splashes: Tally,
     /// Drips from eaves and leaves.
     pub drips: Tally,

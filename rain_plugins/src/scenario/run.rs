@@ -10,7 +10,7 @@ use super::error::ScenarioError;
 use super::expect::{CaptureMasks, Evaluator, Evidence};
 use super::file::{Mask, Scenario, ScenePart};
 use super::masks;
-use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, frame_name, mask_name};
+use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, above_name, frame_name, mask_name};
 use super::plot;
 use super::report::{Budget, Counts, Memory, PassRow, Report, Tally, Timings};
 use super::session::Session;
@@ -143,6 +143,9 @@ pub fn run(
         if scenario.outputs.frames {
             output.write_picture(&frame_name(index), &capture.frame)?;
         }
+        if let Some(above) = &capture.above {
+            output.write_picture(&above_name(index), above)?;
+        }
         for (mask, texels) in &capture.masks {
             let bytes = masks::encode(scenario.outputs.size, texels)
                 .map_err(|e| RunError::Renderer(format!("mask {}: {e}", mask.suffix())))?;
@@ -173,11 +176,12 @@ pub fn run(
     progress(Progress::Writing);
     let passes = pass_rows(&session);
     let drawn = session.passes();
-    let [drops, cards] =
-        [&drawn.drops, &drawn.cards].map(|counts| counts.iter().map(|n| u64::from(*n)).collect::<Vec<_>>());
+    let [drops, cards, splashes] = [&drawn.drops, &drawn.cards, &drawn.splashes]
+        .map(|counts| counts.iter().map(|n| u64::from(*n)).collect::<Vec<_>>());
     let counts = Counts {
         drops: Tally::of(&drops),
         billboards: Tally::of(&cards),
+        splashes: Tally::of(&splashes),
         ..Counts::default()
     };
     let (budget, _) = record.budget(&mut session);
@@ -389,6 +393,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
                 "splash" => &["rain_splash_make", "rain_splash"],
                 "haze" => &["rain_haze_areas", "rain_haze"],
                 "lattice" => &["rain_lattice"],
+                "far_rain" => &["rain_far_rain"],
                 "rainfall" => &["rain_rainfall_project", "rain_rainfall"],
                 "water_map" => &["rain_water_map"],
                 "lens" => &["rain_lens"],

@@ -13,6 +13,7 @@ use image::RgbImage;
 use rain_core::surface::ground::GroundError;
 use rain_ecs::prelude::*;
 
+use super::above::Above;
 use super::file::{Mask, Rings, Scenario};
 use super::masks::{texel_from_coverage, texel_from_depth, texel_from_water};
 use super::run::RunError;
@@ -41,6 +42,8 @@ pub struct Capture {
     pub frame: RgbImage,
     /// 16-bit texels, row by row, of each mask asked for.
     pub masks: Vec<(Mask, Vec<u16>)>,
+    /// The rain from above, if it was asked for.
+    pub above: Option<RgbImage>,
     /// Wall time of the captured frame, GPU included. Units: ms.
     pub frame_ms: f64,
 }
@@ -261,6 +264,9 @@ impl Session {
         let clock = Instant::now();
         self.update_to(at.max(self.now_ns))?;
         let frame_ms = clock.elapsed().as_secs_f64() * 1e3;
+        // An inactive view forgets what it drew.
+        let above = self.scenario.outputs.above && self.scenario.rain.enabled;
+        let above = above.then(|| Above::of(self.app.world(), stage.camera)).flatten();
         self.set_active(false);
         for _ in 0..PATIENCE_UPDATES {
             let complete = returned.0.lock().unwrap_or_else(PoisonError::into_inner).len() == readers.len();
@@ -296,6 +302,7 @@ impl Session {
             time_s,
             frame,
             masks,
+            above: above.map(|above| above.picture()),
             frame_ms,
         })
     }

@@ -25,9 +25,10 @@ use super::file::{Lens, Scenario, Sky};
 use super::path::{CameraPath, VehiclePath, wheel_angle_rad};
 use super::puddles::PartRoot;
 use super::run::RunError;
-use super::sky::{Cube, Handedness, SkyModel, generate};
-use crate::haze::HazeSettings;
+use super::sky::{Cube, Handedness, SPECULAR_PX, SkyModel, generate, prefilter};
+use crate::haze::{HazeSettings, HazeSky};
 use crate::lens::{LensDrops, WindscreenWipers};
+use crate::rainbow::Rainbow;
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
 use crate::surface::{KeepDry, MovesInRain, PlanarReflection, WaterLevels};
@@ -234,7 +235,8 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
     let [width, height] = scenario.outputs.size;
     let environment = &scenario.environment;
     let Sky::Overcast(sky) = &environment.sky;
-    let maps = generate(&SkyModel::new(sky, scenario.seed), Handedness::FlippedZ);
+    let model = SkyModel::new(sky, scenario.seed);
+    let maps = generate(&model, Handedness::FlippedZ);
     let world = app.world_mut();
     let mut images = world.resource_mut::<Assets<Image>>();
     let mut target = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
@@ -244,6 +246,8 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
     let skybox = images.add(cube_image(std::slice::from_ref(&maps.sky)));
     let diffuse = images.add(cube_image(std::slice::from_ref(&maps.diffuse)));
     let specular = images.add(cube_image(&maps.specular));
+    let open = Cube::from_fn(SPECULAR_PX, Handedness::FlippedZ, |d| model.radiance(d, false));
+    let open = images.add(cube_image(&prefilter(open)));
     let masks = (!scenario.outputs.masks.is_empty()).then(|| RainMasks {
         rain: images.add(mask_image(MaskKind::Rain, width, height)),
         wet: images.add(mask_image(MaskKind::Surface, width, height)),
@@ -308,6 +312,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             contrast: scenario.rain.contrast as f32,
             exposure_s: scenario.rain.exposure_s as f32,
             cards: scenario.rain.cards,
+            far_rain: scenario.rain.far_rain,
             ..default()
         });
         camera.insert(HazeSettings {
@@ -316,6 +321,16 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             glow: scenario.rain.glow as f32,
             ..default()
         });
+        camera.insert(HazeSky {
+            specular_map: open,
+            intensity: brightness,
+        });
+        if scenario.rain.rainbow > 0.0 {
+            camera.insert(Rainbow {
+                strength: scenario.rain.rainbow as f32,
+                ..default()
+            });
+        }
         if environment.reflection {
             camera.insert(PlanarReflection::default());
         }

@@ -8,7 +8,10 @@ use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::Spectrum;
 use rain_core::splash::{SplashAnchor, SplashExtent, SplashField, SplashShares};
 use rain_ecs::prelude::*;
+use rain_ecs::splash::FootSystems;
+use rain_render::splash::StepSplash;
 
+use super::feet::{RecentSteps, frame_time_s, keep_steps};
 use crate::cover::{AirAroundView, CoverMap};
 use crate::rainfall::{RainView, SoftwareAdapter, ViewMotion, fill_containers, view_volume};
 use crate::report::{PassName, RainReport, SkipReason};
@@ -93,6 +96,8 @@ pub(crate) struct SplashShot {
     pub reach_m: f32,
     pub near_reach_m: f32,
     pub capacity: u32,
+    /// Steps in water; places in the world.
+    pub steps: Vec<StepSplash>,
     pub motion: ViewMotion,
 }
 
@@ -135,7 +140,7 @@ impl SplashViewFrame {
     }
 }
 
-/// Splashes of rain in all [`RainView`]s.
+/// Splashes of rain in all [`RainView`]s, and of whoever steps in water ([`FootSplash`]).
 pub struct SplashPlugin;
 
 impl Plugin for SplashPlugin {
@@ -144,9 +149,13 @@ impl Plugin for SplashPlugin {
             .init_resource::<SplashSettings>()
             .init_resource::<SoftwareAdapter>()
             .init_resource::<AirAroundView>()
+            .init_resource::<RecentSteps>()
+            .add_message::<FootSplash>()
             .add_systems(
                 PostUpdate,
-                aim_splashes.in_set(RainViewSystems::Views).after(fill_containers),
+                (keep_steps.after(FootSystems), aim_splashes.after(fill_containers))
+                    .chain()
+                    .in_set(RainViewSystems::Views),
             );
         app.register_required_components::<RainView, SplashViewFrame>();
     }
@@ -175,6 +184,7 @@ fn aim_splashes(
     cover: Option<Res<CoverMap>>,
     surface: Option<Res<SurfaceState>>,
     areas: Option<Res<RainAreas>>,
+    recent: Res<RecentSteps>,
     mut views: Query<(
         Entity,
         &RainView,
@@ -186,8 +196,8 @@ fn aim_splashes(
     )>,
 ) {
     let settings = good_settings(&settings, &mut kept);
-    let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
-    let now = clock.now_s() + since_tick;
+    let now = frame_time_s(&clock);
+    let steps = recent.shown(now);
     // In steps, so that tables last while the film grows; downwards, so that nothing that splashes is left out.
     let film_mm = surface.map_or(0.0, |s| (f64::from(s.state.y) / FILM_STEP_MM).floor() * FILM_STEP_MM);
     let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
@@ -207,6 +217,7 @@ fn aim_splashes(
                 0.0
             })
         });
+        let mapped = cover.as_ref().is_some_and(|cover| cover.placement.is_some());
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
         } else if !view.enabled
@@ -216,13 +227,13 @@ fn aim_splashes(
             || settings.distance_m <= 0.0
         {
             Some(SkipReason::Disabled)
-        } else if spectrum.intensity_mm_h <= 0.0 {
+        } else if spectrum.intensity_mm_h <= 0.0 && steps.is_empty() {
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_)) {
             Some(SkipReason::Unsupported)
         } else if air.closed_in == Some(entity) {
             Some(SkipReason::Indoors)
-        } else if cover.as_ref().is_none_or(|cover| cover.placement.is_none()) {
+        } else if steps.is_empty() && !mapped {
             Some(SkipReason::NoGround)
         } else {
             None
@@ -234,12 +245,15 @@ fn aim_splashes(
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
         let budget = settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 });
-        let near_m = settings.drops_distance_m.min(settings.distance_m);
+        // Where there are steps alone, no ground is looked through for impacts.
+        let impacts = mapped && spectrum.intensity_mm_h > 0.0;
+        let reach_m = if impacts { settings.distance_m } else { 0.0 };
+        let near_m = settings.drops_distance_m.min(reach_m);
         let source = Source {
             seed: seed.0,
             spectrum,
             extent: SplashExtent {
-                reach_m: settings.distance_m.into(),
+                reach_m: reach_m.into(),
                 near_m: near_m.into(),
                 angle_rad: 2.0 * libm::atan(1.0 / f64::from(clip_from_view.x_axis.x).abs().max(1e-3)),
                 exposure_s: view.exposure_s.into(),
@@ -257,10 +271,11 @@ fn aim_splashes(
             exposure_s: view.exposure_s,
             contrast: view.contrast,
             soft_m: view.soft_m,
-            reach_m: settings.distance_m,
+            reach_m,
             near_reach_m: near_m,
             // The budget is a mean.
             capacity: 2 * budget + 1024,
+            steps: steps.clone(),
             motion: *motion,
         });
     }

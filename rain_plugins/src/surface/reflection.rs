@@ -11,12 +11,13 @@ use rain_render::reflection::MAX_MIRRORS;
 use super::state::SurfaceState;
 use super::water::{WaterAppearance, WaterImages, WaterLevels};
 use crate::cover::AirAroundView;
+use crate::haze::{HazeSky, HazeViewFrame};
 use crate::rainfall::RainView;
-use crate::render_adapter::{WetMaterial, mirror_camera, reflection_image, reflection_target};
+use crate::render_adapter::{DeferredPrepass, WetMaterial, mirror_camera, reflection_image, reflection_target};
 use crate::report::{PassName, RainReport, SkipReason};
 
-/// Put on a camera with [`RainView`] and a perspective projection: wet ground mirrors the scene itself, not only the
-/// environment map. Costs a second, smaller view of the scene in frames in which the ground is wet. At most
+/// Put on a camera with [`RainView`], a perspective projection and forward materials: wet ground mirrors the scene itself,
+/// not only the environment map. Costs a second, smaller view of the scene in frames in which the ground is wet. At most
 /// [`MAX_MIRRORS`] active views have it, by the order of their cameras.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default)]
@@ -47,14 +48,16 @@ pub struct RainMirrorView {
 /// A view in its mirror.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorView {
-    /// The eye that it belongs to. Units: m, world.
+    /// The camera that it belongs to.
+    pub of: Entity,
+    /// Its eye. Units: m, world.
     pub eye: Vec3,
     /// Where that looks: another view may look elsewhere from the same place.
     pub forward: Vec3,
     /// Of the mirror. Units: m, world.
     pub height: f32,
     /// Its image under the plane.
-    mirrored_eye: Vec3,
+    pub(crate) mirrored_eye: Vec3,
     /// Places relative to the mirrored eye to its clip space: without the world's large numbers.
     clip_from_mirrored_eye: Mat4,
 }
@@ -107,9 +110,12 @@ pub(super) struct Mirrored {
     reflection: &'static PlanarReflection,
     exposure: Option<&'static Exposure>,
     environment: Option<&'static EnvironmentMapLight>,
+    open_sky: Option<&'static HazeSky>,
     sky: Option<&'static Skybox>,
     fog: Option<&'static DistanceFog>,
     layers: Option<&'static RenderLayers>,
+    /// Deferred materials know no mirror.
+    deferred: Has<DeferredPrepass>,
 }
 
 /// Water farther away than this does not choose the mirror's height. Units: m.
@@ -162,6 +168,9 @@ fn aim(
     let Projection::Perspective(own) = view.projection else {
         return Err(SkipReason::Unsupported);
     };
+    if view.deferred {
+        return Err(SkipReason::Unsupported);
+    }
     let eye = view.transform.translation();
     let height = view
         .reflection
@@ -182,6 +191,7 @@ fn aim(
     let turned = Mat4::from_mat3(Mat3::from_quat(transform.rotation) * Mat3::from_diagonal(transform.scale));
     Ok(Aim {
         view: MirrorView {
+            of: view.entity,
             eye,
             forward: view.transform.forward().into(),
             height,
@@ -274,7 +284,8 @@ pub(super) fn aim_mirrors(
                 })*
             };
         }
-        follow!(exposure: Exposure, environment: EnvironmentMapLight, sky: Skybox, fog: DistanceFog, layers: RenderLayers);
+        follow!(exposure: Exposure, environment: EnvironmentMapLight, open_sky: HazeSky, sky: Skybox);
+        follow!(fog: DistanceFog, layers: RenderLayers);
     }
     for (layer, aim) in (0..).zip(aims) {
         let Some(aim) = aim.filter(|_| !spawned[layer as usize]) else {
@@ -284,6 +295,7 @@ pub(super) fn aim_mirrors(
         commands.spawn((
             RainMirrorView { layer },
             mirror_camera(target),
+            HazeViewFrame::default(),
             aim.transform,
             Projection::custom(aim.projection),
         ));

@@ -34,6 +34,14 @@ fn rain_under_cloud(cloud: f32, rise: f32, way: f32) -> vec2<f32> {
     return vec2<f32>(min(out, way), way);
 }
 
+// Share of the rain at a height over the eye, m: all of it up to `thin` below the cloud's base, none above. Error: 1e-6.
+fn rain_cloud_share(height: f32, cloud: f32, thin: f32) -> f32 {
+    if (thin > 0.0) {
+        return clamp((cloud - height) / thin, 0.0, 1.0);
+    }
+    return select(0.0, 1.0, height < cloud);
+}
+
 // Integral of what a drop's disc sends per steradian, from straight on to an angle: refraction and outer reflection.
 // Error: 1e-6.
 fn rain_phase_integral(theta: f32) -> f32 {

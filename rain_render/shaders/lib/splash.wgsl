@@ -100,6 +100,44 @@ fn rain_thrown_place(velocity: vec3<f32>, diameter_mm: f32, age: f32) -> vec3<f3
     return sink * age + (velocity - sink) * (time * (1.0 - exp(-age / time)));
 }
 
+// How many drops a step throws. Error: the CPU's, save where rounding meets a whole number.
+fn rain_foot_drop_count(strength: f32) -> u32 {
+    return select(0u, u32(8.0 + 55.0 * min(strength, 1.0)), strength > 0.0);
+}
+
+// A drop that a step throws: velocity, m/s, diameter (w, mm), and the direction in which it leaves the sole.
+struct RainFootDrop {
+    drop: vec4<f32>,
+    outward: vec3<f32>,
+}
+
+// Half the width of a sole, m.
+const RAIN_SOLE_M: f32 = 0.05;
+
+// Drop `index` of a step. Error: diameter 1e-6 relative, velocity 1e-5 m/s against the CPU's.
+fn rain_foot_drop(strength: f32, key: vec3<u32>, index: u32) -> RainFootDrop {
+    let count = max(rain_foot_drop_count(strength), 1u);
+    let marks = rain_pcg3d(vec3<u32>(key.x ^ rain_pcg(index), key.y, key.z + index));
+    let u = rain_unit(marks.x);
+    let speed = sqrt(min(strength, 1.0)) * (0.8 + 1.7 * rain_unit(marks.y));
+    let angle = 0.43633232 + 0.6981317 * rain_unit(marks.z);
+    let sector = f32(index) + rain_unit((marks.y << 13u) | (marks.y >> 19u));
+    let around = 6.2831853 * (sector / f32(count));
+    let outward = vec3<f32>(cos(around), 0.0, sin(around));
+    let velocity = speed * (outward * cos(angle) + vec3<f32>(0.0, sin(angle), 0.0));
+    return RainFootDrop(vec4<f32>(velocity, 1.5 + 5.0 * u * u), outward);
+}
+
+// The sheet that a sole presses out: radius and height, m, and opacity. Error: 1e-5 relative to the CPU's.
+fn rain_foot_sheet(strength: f32, age: f32) -> vec3<f32> {
+    let t = age / 0.12;
+    if (t < 0.0 || t >= 1.0 || strength <= 0.0) {
+        return vec3<f32>(0.0);
+    }
+    let root = sqrt(min(strength, 1.0));
+    return vec3<f32>(RAIN_SOLE_M + 0.15 * root * t, 0.04 * root * 4.0 * t * (1.0 - t), 0.25 * min(2.0 - 2.0 * t, 1.0));
+}
+
 // Opacity of a crown's sheet, seen square on. Chosen by eye.
 const RAIN_CROWN_OPACITY: f32 = 0.5;
 

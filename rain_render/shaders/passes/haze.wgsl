@@ -5,6 +5,8 @@
 @group(0) @binding(2) var scene_depth: texture_depth_2d;
 @group(0) @binding(3) var environment: texture_cube<f32>;
 @group(0) @binding(4) var environment_sampler: sampler;
+// Light of the rainbow by angle, of that on the drops, 1/sr.
+@group(0) @binding(5) var<uniform> bow: array<vec4<f32>, RAIN_BOW_KNOTS>;
 
 struct HazeVertex {
     @builtin(position) position: vec4<f32>,
@@ -14,6 +16,12 @@ struct HazeVertex {
     @location(2) @interpolate(flat) seen_b: vec4<f32>,
     @location(3) @interpolate(flat) seen_c: vec4<f32>,
     @location(4) @interpolate(flat) seen_d: vec4<f32>,
+}
+
+// Distance along the unit line `towards` of what has this depth; far where nothing is drawn.
+fn distance_of(depth: f32, towards: vec3<f32>) -> f32 {
+    let slope = depth * dot(towards, view.forward.xyz) - dot(towards, view.depth_row.xyz);
+    return view.depth_row.w / max(slope, view.depth_row.w * 1e-9);
 }
 
 // How far before a lamp its own housing may be, m.
@@ -35,14 +43,15 @@ fn lamp_seen(index: u32) -> f32 {
     let focal = 0.5 * view.viewport.w * length(vec3<f32>(
         view.clip_from_eye[0].y, view.clip_from_eye[1].y, view.clip_from_eye[2].y));
     let radius = max(2.0, focal * max(place.w, 0.15) / ahead);
+    let distance = length(place.xyz);
     var seen = 0.0;
     for (var i = 0u; i < 16u; i += 1u) {
         // Golden angle: evenly over the disc.
         let turn = 2.3999632 * f32(i);
         let off = radius * sqrt((f32(i) + 0.5) / 16.0) * vec2<f32>(cos(turn), sin(turn));
         let pixel = clamp(middle + off, vec2<f32>(0.0), view.viewport.zw - 1.0) + view.viewport.xy;
-        let hidden = view.forward.w / max(textureLoad(scene_depth, vec2<i32>(pixel), 0), 1e-7) < ahead - HOUSING_M;
-        seen += select(1.0, 0.0, hidden) / 16.0;
+        let found = distance_of(textureLoad(scene_depth, vec2<i32>(pixel), 0), place.xyz / distance);
+        seen += select(1.0, 0.0, found < distance - HOUSING_M) / 16.0;
     }
     return seen;
 }
@@ -82,14 +91,50 @@ fn azimuth_place(towards: vec3<f32>) -> f32 {
 // Optical depth along the ground at an azimuth up to a distance. Error: 0.01 of it as a mean over pixels; for one 0.027
 // of the extinction times the distance to the last rain.
 fn ground_depth(azimuth: f32, distance: f32) -> f32 {
+    return grid_depth(0u, azimuth, distance);
+}
+
+// Where the far rain's part of the grid begins, over its share.
+const FAR_GRID: u32 = RAIN_HAZE_AZIMUTHS * (RAIN_HAZE_INTERVALS + 1u);
+
+fn grid_depth(first: u32, azimuth: f32, distance: f32) -> f32 {
     let knot = clamp(rain_haze_place(distance, view.grid.z), 0.0, f32(RAIN_HAZE_INTERVALS) - 0.001);
     let i = u32(knot);
     let low = rain_haze_knot(f32(i), view.grid.z);
     let high = rain_haze_knot(f32(i) + 1.0, view.grid.z);
     let t = clamp((distance - low) / (high - low), 0.0, 1.0);
-    let row = u32(azimuth) * (RAIN_HAZE_INTERVALS + 1u) + i;
+    let row = first + u32(azimuth) * (RAIN_HAZE_INTERVALS + 1u) + i;
     let next = row + RAIN_HAZE_INTERVALS + 1u;
     return mix(mix(grid[row], grid[row + 1u], t), mix(grid[next], grid[next + 1u], t), fract(azimuth));
+}
+
+// Pieces of the way through the rain that thins out below the cloud.
+const THIN_PIECES: u32 = 4u;
+
+// Where a line of sight enters the rain that thins out, m: no more than where it ends.
+fn thin_from(towards: vec3<f32>, end: f32) -> f32 {
+    if (view.far.z <= 0.0 || towards.y <= 0.0 || view.cloud <= 0.0) {
+        return end;
+    }
+    return min(end, (view.cloud - view.far.z) / towards.y);
+}
+
+// Optical depth on the ground's grid that begins at `first` from `start` to `end`, m along the line of sight, as much as there is
+// under the cloud. Error: 0.01 of it as a mean over pixels, 0.03 of the far rain's.
+fn depth_under_cloud(first: u32, azimuth: f32, flat: f32, towards: vec3<f32>, start: f32, end: f32) -> f32 {
+    let whole = max(thin_from(towards, end), start);
+    var before = grid_depth(first, azimuth, flat * whole);
+    var sum = before - grid_depth(first, azimuth, flat * start);
+    if (whole < end) {
+        let step = (end - whole) / f32(THIN_PIECES);
+        for (var i = 0u; i < THIN_PIECES; i += 1u) {
+            let after = grid_depth(first, azimuth, flat * (whole + step * f32(i + 1u)));
+            let height = towards.y * (whole + step * (f32(i) + 0.5));
+            sum += (after - before) * rain_cloud_share(height, view.cloud, view.far.z);
+            before = after;
+        }
+    }
+    return sum / flat;
 }
 
 // Intervals in which what is drawn is taken off the areas' rain.
@@ -100,12 +145,15 @@ const DRAWN_INTERVALS: u32 = 6u;
 fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
     let way = ends.y - ends.x;
     let flat = length(towards.xz);
+    let mist = view.air.x * way;
     if (view.uneven < 0.5 || flat < 1e-3) {
         let drawn = drawn_metres(ends.y) - drawn_metres(ends.x);
-        return view.extinction * vec2<f32>(way, max(way - drawn, 0.0));
+        let thin = ends.y - thin_from(towards, ends.y);
+        let all = way - 0.5 * thin * thin * max(towards.y, 0.0) / max(view.far.z, 1e-6);
+        return view.extinction * vec2<f32>(all, max(all - drawn, 0.0)) + mist;
     }
     let azimuth = azimuth_place(towards);
-    let total = (ground_depth(azimuth, flat * ends.y) - ground_depth(azimuth, flat * ends.x)) / flat;
+    let total = depth_under_cloud(0u, azimuth, flat, towards, ends.x, ends.y);
     var drawn = 0.0;
     var before = ends.x;
     var before_depth = ground_depth(azimuth, flat * ends.x);
@@ -122,7 +170,11 @@ fn depths(towards: vec3<f32>, ends: vec2<f32>) -> vec2<f32> {
             before_drawn = metres;
         }
     }
-    return vec2<f32>(total, max(total - drawn, 0.0));
+    if (view.far.x > 0.0) {
+        let share = view.far.x * rain_far_pitch_weight(towards.y);
+        drawn += share * depth_under_cloud(FAR_GRID, azimuth, flat, towards, ends.x, ends.y);
+    }
+    return vec2<f32>(total, max(total - drawn, 0.0)) + mist;
 }
 
 // Exposed radiance that nobody sees.
@@ -138,12 +190,12 @@ fn glow(towards: vec3<f32>, ends: vec2<f32>, in: HazeVertex) -> vec3<f32> {
         if (share <= 0.0) {
             continue;
         }
-        var extinction = view.extinction;
+        var extinction = view.extinction + view.air.x;
         if (view.uneven > 0.5) {
             // The rain between the eye and the lamp, or the scene before it.
             let flat = max(length(lamp.place.xz), 0.5);
             let azimuth = azimuth_place(lamp.place.xyz);
-            extinction = ground_depth(azimuth, flat) / flat;
+            extinction = ground_depth(azimuth, flat) / flat + view.air.x;
         }
         // No line of sight gets more than half of I σ / h; less than a third of the darkest 8-bit step is left out.
         let beside = max(length(cross(lamp.place.xyz, towards)), lamp.place.w);
@@ -169,6 +221,13 @@ fn glow(towards: vec3<f32>, ends: vec2<f32>, in: HazeVertex) -> vec3<f32> {
     return sum;
 }
 
+// Light of the rainbow at an angle from the point opposite the sun, of that on the drops, 1/sr. Error: 2e-4 per sr.
+fn rainbow(angle: f32) -> vec3<f32> {
+    let place = rain_bow_place(angle);
+    let index = min(u32(place), RAIN_BOW_KNOTS - 2u);
+    return mix(bow[index].rgb, bow[index + 1u].rgb, place - f32(index));
+}
+
 struct Haze {
     light: vec3<f32>,
     obscured: f32,
@@ -178,10 +237,13 @@ fn haze(in: HazeVertex, pixel: vec2<f32>, which: u32) -> Haze {
     let ahead = view.eye_from_clip * vec4<f32>(in.ndc, 1.0, 1.0);
     let towards = normalize(ahead.xyz / ahead.w);
     let depth = textureLoad(scene_depth, vec2<i32>(pixel), i32(which));
-    // Infinite reverse-Z: distance = near / depth; where nothing is drawn it is 0.
-    let along = view.forward.w / max(depth, 1e-12);
-    let way = min(along / max(dot(towards, view.forward.xyz), 1e-3), view.limit);
-    let ends = rain_under_cloud(view.cloud, towards.y, way);
+    let way = min(distance_of(depth, towards), view.limit);
+    var ends = rain_under_cloud(view.cloud, towards.y, way);
+    if (view.air.y > 0.0) {
+        // What lies before the mirror is no part of its picture: the view itself has it.
+        ends.x = min(max(ends.x, view.air.y / max(towards.y, 1e-6)), ends.y);
+    }
+    let through = depths(towards, ends);
     var out: Haze;
     // What a drop keeps by inner reflections leaves it all the same: in even light haze shows that light.
     out.light = rain_drop_shine(
@@ -190,17 +252,25 @@ fn haze(in: HazeVertex, pixel: vec2<f32>, which: u32) -> Haze {
         view.environment,
         view.ambient,
         view.sun_direction.xyz,
-        view.sun.rgb,
+        view.sun.rgb * view.air.w,
         towards,
     ) / (RAIN_DROP_TRANSMITTED + RAIN_DROP_REFLECTED);
-    if (view.artist >= 0.0) {
-        out.obscured = rain_haze_share(view.artist * (ends.y - ends.x));
+    out.obscured = rain_haze_share(through.y);
+    var light = out.light * out.obscured;
+    let share = view.sun_direction.w;
+    if (share > 0.0) {
         let luminance = dot(out.light, vec3<f32>(0.2126, 0.7152, 0.0722));
-        out.light = rain_desaturated(mix(out.light, luminance * view.fog.rgb, view.coloured), view.fog.w);
-    } else {
-        out.obscured = rain_haze_share(depths(towards, ends).y);
+        let own = rain_desaturated(mix(out.light, luminance * view.fog.rgb, view.coloured), view.fog.w);
+        let obscured = rain_haze_share(view.artist * (ends.y - ends.x));
+        light = mix(light, own * obscured, share);
+        out.obscured = mix(out.obscured, obscured, share);
     }
-    out.light = out.light * out.obscured + glow(towards, ends, in);
+    out.light = light + glow(towards, ends, in);
+    if (view.air.z > 0.0) {
+        let rain = max(through.x - view.air.x * (ends.y - ends.x), 0.0) / view.efficiency;
+        let light = rainbow(rain_bow_angle(towards, view.sun_direction.xyz)) * rain_bow_share(rain);
+        out.light += view.air.z * view.sun.rgb * light;
+    }
     return out;
 }
 

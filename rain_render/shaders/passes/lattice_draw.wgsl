@@ -45,10 +45,35 @@ fn lamps_on(card: Card) -> u32 {
     return found;
 }
 
+fn behind_glass(place: vec3<f32>) -> bool {
+    for (var i = 0u; i < view.panes; i++) {
+        if (rain_behind_pane(view.pane[i], place)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32) -> CardVertex {
+    return corner_of(vertex_index, false);
+}
+
+// Those behind what is transparent.
+@vertex
+fn vertex_behind(@builtin(vertex_index) vertex_index: u32) -> CardVertex {
+    return corner_of(vertex_index, true);
+}
+
+// A corner of a card; nothing of one that is not `hidden` behind glass, or is while it should not.
+fn corner_of(vertex_index: u32, hidden: bool) -> CardVertex {
     let index = vertex_index / 6u;
     let card = cards[index];
+    if (behind_glass(card.centre.xyz) != hidden) {
+        var nothing: CardVertex;
+        nothing.position = vec4<f32>(0.0, 0.0, -1.0, 1.0);
+        return nothing;
+    }
     let corner = rain_quad_corner(vertex_index);
     let right = vec3<f32>(card.facing.y, 0.0, -card.facing.x);
     let point = card.centre.xyz + (right * corner.x + vec3<f32>(0.0, corner.y, 0.0)) * card.centre.w;

@@ -21,7 +21,7 @@ fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
 }
 
 fn from_eye(pixel: vec2<f32>, depth: f32) -> vec3<f32> {
-    let ndc = (pixel / view.screen.yz - 0.5) * vec2<f32>(2.0, -2.0);
+    let ndc = ((pixel - view.corner.xy) / view.screen.yz - 0.5) * vec2<f32>(2.0, -2.0);
     let p = view.eye_from_clip * vec4<f32>(ndc, depth, 1.0);
     return p.xyz / p.w;
 }
@@ -31,7 +31,9 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     var out: Masks;
     let texel = vec2<i32>(position.xy);
     let depth = textureLoad(scene_depth, texel, 0);
-    if (depth <= 0.0) {
+    let first = vec2<i32>(view.corner.xy);
+    let last = first + vec2<i32>(view.screen.yz) - 1;
+    if (depth <= 0.0 || any(texel < first) || any(texel > last)) {
         out.wet = vec4<f32>(0.0);
         out.depth = vec4<f32>(1e9, 0.0, 0.0, 0.0);
         out.water = vec4<f32>(0.0);
@@ -39,14 +41,13 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     }
     let p = from_eye(position.xy, depth);
     // Face normal from the neighbours on the same surface: the nearer of both sides.
-    let last = vec2<i32>(view.screen.yz) - 1;
-    let left = from_eye(position.xy - vec2<f32>(1.0, 0.0), textureLoad(scene_depth, max(texel - vec2<i32>(1, 0), vec2<i32>(0)), 0));
+    let left = from_eye(position.xy - vec2<f32>(1.0, 0.0), textureLoad(scene_depth, max(texel - vec2<i32>(1, 0), first), 0));
     let right = from_eye(position.xy + vec2<f32>(1.0, 0.0), textureLoad(scene_depth, min(texel + vec2<i32>(1, 0), last), 0));
-    let up = from_eye(position.xy - vec2<f32>(0.0, 1.0), textureLoad(scene_depth, max(texel - vec2<i32>(0, 1), vec2<i32>(0)), 0));
+    let up = from_eye(position.xy - vec2<f32>(0.0, 1.0), textureLoad(scene_depth, max(texel - vec2<i32>(0, 1), first), 0));
     let down = from_eye(position.xy + vec2<f32>(0.0, 1.0), textureLoad(scene_depth, min(texel + vec2<i32>(0, 1), last), 0));
     // At the picture's rim there is one side alone.
     let nearer = vec2<bool>(length(right - p) < length(p - left), length(down - p) < length(p - up));
-    let further = (nearer | (texel == vec2<i32>(0))) & (texel != last);
+    let further = (nearer | (texel == first)) & (texel != last);
     let dx = select(p - left, right - p, further.x);
     let dy = select(p - up, down - p, further.y);
     var normal = normalize(cross(dy, dx));
@@ -71,7 +72,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Masks {
     out.water = vec4<f32>(select(0.0, max(depth_of_water, 0.0), puddle > 0.0), 0.0, 0.0, 0.0);
     if (view.screen.w > 0.5) {
         // Wet materials know better: what artists placed, their own strength, a wetness of their own.
-        let known = rain_mask_of(textureLoad(known_map, texel, 0));
+        let known = rain_mask_of(textureLoad(known_map, texel - first, 0));
         out.wet.x = select(out.wet.x, known.x, known.z > 0.5);
         out.water.x = select(out.water.x, known.y, known.z > 0.5);
     }

@@ -15,15 +15,14 @@ struct StreakVertex {
     @location(3) @interpolate(flat) coverage: f32,
 }
 
-@vertex
-fn vertex(@builtin(vertex_index) vertex_index: u32) -> StreakVertex {
+// A corner of a streak of this half width; nothing of one that has none.
+fn corner(streak: Streak, half: f32, vertex_index: u32) -> StreakVertex {
     var out: StreakVertex;
-    let streak = streaks[vertex_index / 6u];
-    if (streak.shape.z <= 0.0) {
+    if (half <= 0.0) {
         out.position = vec4<f32>(0.0, 0.0, -1.0, 1.0);
         return out;
     }
-    let quad = rain_streak_corner(streak.ends, streak.shape.z, rain_quad_corner(vertex_index));
+    let quad = rain_streak_corner(streak.ends, half, rain_quad_corner(vertex_index));
     let ndc = (quad.pixel / view.viewport - 0.5) * vec2<f32>(2.0, -2.0);
     out.position = vec4<f32>(ndc, mix(streak.shape.x, streak.shape.y, quad.along), 1.0);
     out.local = quad.local;
@@ -31,6 +30,19 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> StreakVertex {
     out.light = vec4<f32>(streak.light.rgb, streak.shape.w);
     out.coverage = streak.light.w;
     return out;
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) vertex_index: u32) -> StreakVertex {
+    let streak = streaks[vertex_index / 6u];
+    return corner(streak, streak.shape.z, vertex_index);
+}
+
+// Those behind what is transparent.
+@vertex
+fn vertex_behind(@builtin(vertex_index) vertex_index: u32) -> StreakVertex {
+    let streak = streaks[vertex_index / 6u];
+    return corner(streak, -streak.shape.z, vertex_index);
 }
 
 fn presence(in: StreakVertex) -> f32 {

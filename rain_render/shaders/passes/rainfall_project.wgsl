@@ -23,6 +23,15 @@ fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
     return light;
 }
 
+fn behind_glass(place: vec3<f32>) -> bool {
+    for (var i = 0u; i < view.panes; i++) {
+        if (rain_behind_pane(view.pane[i], place)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 fn to_pixels(clip: vec4<f32>) -> vec2<f32> {
     return (clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5) * view.viewport;
 }
@@ -86,13 +95,14 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
     // Off the axis a flat picture draws a sphere out to an ellipse.
     let secant = clamp(length(0.5 * (p + before)) / distance, 1.0, 4.0);
     let opacity = min(1.0, 0.7853982 * size * size * secant / (width * span));
+    let middle = 0.5 * (p + before);
     out.ends = vec4<f32>(a, b);
     out.shape = vec4<f32>(
         head.z / head.w,
         tail.z / tail.w,
-        0.5 * width,
+        select(0.5, -0.5, behind_glass(middle)) * width,
         weight * rain_contrast(opacity, view.contrast),
     );
-    out.light = vec4<f32>(drop_radiance(0.5 * (p + before)), weight * min(1.0, size / width));
+    out.light = vec4<f32>(drop_radiance(middle), weight * min(1.0, size / width));
     streaks[id.x] = out;
 }

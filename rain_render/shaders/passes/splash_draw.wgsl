@@ -18,8 +18,23 @@ struct SplashVertex {
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32) -> SplashVertex {
+    return corner_of(vertex_index, false);
+}
+
+// Those behind what is transparent.
+@vertex
+fn vertex_behind(@builtin(vertex_index) vertex_index: u32) -> SplashVertex {
+    return corner_of(vertex_index, true);
+}
+
+// A corner of a part; nothing of one that is not `behind` glass, or is while it should not.
+fn corner_of(vertex_index: u32, behind: bool) -> SplashVertex {
     var out: SplashVertex;
     let part = parts[vertex_index / 6u];
+    if ((part.form.w < 0.0) != behind) {
+        out.position = vec4<f32>(0.0, 0.0, -1.0, 1.0);
+        return out;
+    }
     let corner = rain_quad_corner(vertex_index);
     var pixel: vec2<f32>;
     var depth = part.shape.x;
@@ -44,7 +59,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> SplashVertex {
     out.position = vec4<f32>(ndc, depth, 1.0);
     out.light = vec4<f32>(part.light.rgb, part.shape.w);
     out.coverage = part.light.w;
-    out.form = part.form;
+    out.form = vec4<f32>(part.form.xyz, abs(part.form.w));
     return out;
 }
 

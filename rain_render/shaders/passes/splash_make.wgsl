@@ -19,7 +19,7 @@ const LEAST_OPACITY: f32 = 0.002;
 const LEAST_DROP_OPACITY: f32 = 0.01;
 
 fn shine(p: vec3<f32>) -> vec3<f32> {
-    return rain_drop_shine(
+    var light = rain_drop_shine(
         environment,
         environment_sampler,
         view.environment,
@@ -28,6 +28,20 @@ fn shine(p: vec3<f32>) -> vec3<f32> {
         view.sun.rgb,
         normalize(p),
     );
+    for (var i = 0u; i < view.lamps; i++) {
+        light += rain_lamp_radiance(view.lamp[i], p);
+    }
+    return light;
+}
+
+// 1, or -1 behind what is transparent.
+fn side_of_glass(p: vec3<f32>) -> f32 {
+    for (var i = 0u; i < view.panes; i++) {
+        if (rain_behind_pane(view.pane[i], p)) {
+            return -1.0;
+        }
+    }
+    return 1.0;
 }
 
 fn to_pixels(clip: vec4<f32>) -> vec2<f32> {
@@ -99,13 +113,30 @@ fn crown(found: Found) -> SplashPart {
     opacity = min(opacity, 1.0);
     let radius = grown * rain_crown_radius(found.diameter, speed, found.film, time);
     let height = grown * rain_crown_height(found.diameter, found.excess, time);
-    let distance = length(found.place);
-    let fade = rain_ramp(0.1, 0.25, distance) * (1.0 - rain_ramp(0.7 * view.reach, view.reach, distance));
-    let from_eye = found.place / max(distance, 1e-3);
-    let clip = view.clip_from_eye * vec4<f32>(found.place, 1.0);
+    return standing_sheet(found.place, found.normal, radius, height, opacity, reach_fade(length(found.place), view.reach), rain_unit(found.key.x));
+}
+
+// Fades what is right before the eye, and towards the end of the reach.
+fn reach_fade(distance: f32, reach: f32) -> f32 {
+    return rain_ramp(0.1, 0.25, distance) * (1.0 - rain_ramp(0.7 * reach, reach, distance));
+}
+
+// A sheet of water that stands in a ring, radius and height in m, or nothing (shape.w = 0).
+fn standing_sheet(
+    place: vec3<f32>,
+    normal: vec3<f32>,
+    radius: f32,
+    height: f32,
+    opacity: f32,
+    fade: f32,
+    jets: f32,
+) -> SplashPart {
+    var part: SplashPart;
+    let from_eye = place / max(length(place), 1e-3);
+    let clip = view.clip_from_eye * vec4<f32>(place, 1.0);
     // Drawn before what it stands on: its foot reaches into the ground's pixels.
-    let front = view.clip_from_eye * vec4<f32>(found.place - from_eye * min(2.0 * radius, 0.5 * distance), 1.0);
-    let above = view.clip_from_eye * vec4<f32>(found.place + 0.01 * found.normal, 1.0);
+    let front = view.clip_from_eye * vec4<f32>(place - from_eye * min(2.0 * radius, 0.5 * length(place)), 1.0);
+    let above = view.clip_from_eye * vec4<f32>(place + 0.01 * normal, 1.0);
     if (clip.w < max(view.near, 0.05) || front.w < view.near || above.w < view.near || fade <= 0.0) {
         return part;
     }
@@ -113,7 +144,7 @@ fn crown(found: Found) -> SplashPart {
     let foot = to_pixels(clip);
     let rise = to_pixels(above) - foot;
     let up = select(vec2<f32>(0.0, -1.0), rise / max(length(rise), 1e-6), length(rise) > 1e-4);
-    let down = clamp(-dot(from_eye, found.normal), 0.0, 1.0);
+    let down = clamp(-dot(from_eye, normal), 0.0, 1.0);
     let half = radius * scale;
     let tall = height * sqrt(1.0 - down * down) * scale;
     let minor = half * down;
@@ -128,8 +159,8 @@ fn crown(found: Found) -> SplashPart {
     }
     part.ends = vec4<f32>(foot, up);
     part.shape = vec4<f32>(front.z / front.w, 0.5 * width, tall, shown);
-    part.light = vec4<f32>(shine(found.place), opacity * share);
-    part.form = vec4<f32>(1.0, minor, rain_unit(found.key.x), max(radius, 0.002));
+    part.light = vec4<f32>(shine(place), opacity * share);
+    part.form = vec4<f32>(1.0, minor, jets, max(radius, 0.002) * side_of_glass(place));
     return part;
 }
 
@@ -149,22 +180,26 @@ fn thrown(found: Found, count: u32, index: u32) -> SplashPart {
         return part;
     }
     let p = found.place + now;
-    let distance = length(p);
-    let fade = rain_ramp(0.1, 0.25, distance) * (1.0 - rain_ramp(0.7 * view.near_reach, view.near_reach, distance))
-        * (1.0 - rain_ramp(0.7 * found.life, found.life, found.age));
+    let fade = reach_fade(length(p), view.near_reach) * (1.0 - rain_ramp(0.7 * found.life, found.life, found.age));
+    // Young drops have flown for a part of the exposure.
+    let weight = found.weight * min(found.age / view.exposure, 1.0);
+    return flying(p, found.place + before, drop.w, weight, fade);
+}
+
+// A drop on its way through the exposure, or nothing (shape.w = 0).
+fn flying(p: vec3<f32>, before: vec3<f32>, diameter_mm: f32, weight: f32, fade: f32) -> SplashPart {
+    var part: SplashPart;
     let head = view.clip_from_eye * vec4<f32>(p, 1.0);
-    let tail = view.clip_from_eye_before * vec4<f32>(found.place + before, 1.0);
+    let tail = view.clip_from_eye_before * vec4<f32>(before, 1.0);
     if (min(head.w, tail.w) < max(view.near, 0.05) || fade <= 0.0) {
         return part;
     }
-    let size = drop.w * 1e-3 * view.focal / (0.5 * (head.w + tail.w));
+    let size = diameter_mm * 1e-3 * view.focal / (0.5 * (head.w + tail.w));
     let a = to_pixels(head);
     let b = to_pixels(tail);
     let width = max(1.0, size);
     let span = max(1.0, length(b - a) + size);
-    // Young drops have flown for a part of the exposure.
-    let flown = min(found.age / view.exposure, 1.0);
-    let opacity = min(1.0, found.weight * flown * 0.7853982 * size * size / (width * span));
+    let opacity = min(1.0, weight * 0.7853982 * size * size / (width * span));
     let shown = fade * rain_contrast(opacity, view.contrast);
     if (shown < LEAST_DROP_OPACITY) {
         return part;
@@ -172,7 +207,7 @@ fn thrown(found: Found, count: u32, index: u32) -> SplashPart {
     part.ends = vec4<f32>(a, b);
     part.shape = vec4<f32>(head.z / head.w, tail.z / tail.w, 0.5 * width, shown);
     part.light = vec4<f32>(shine(p), fade * opacity);
-    part.form = vec4<f32>(0.0, 0.0, 0.0, 0.01);
+    part.form = vec4<f32>(0.0, 0.0, 0.0, 0.01 * side_of_glass(p));
     return part;
 }
 
@@ -276,16 +311,62 @@ fn cell_and_slot(id: u32) -> u32 {
     return parts_found;
 }
 
-fn invocations() -> u32 {
+// How far steps are seen, m.
+const FOOT_REACH: f32 = 25.0;
+// Its sheet sheds many fine jets: 16 to 19.
+const FOOT_JETS: f32 = 3.0;
+// A sheet and at most 63 drops.
+const FOOT_PARTS: u32 = 64u;
+
+// Part `index` of the steps: the sheet of each, then its drops. The number of parts.
+fn part_of_step(id: u32, index: u32) -> u32 {
+    let foot = view.foot[index / FOOT_PARTS];
+    let number = index % FOOT_PARTS;
+    let place = foot.place.xyz;
+    let age = foot.place.w;
+    let strength = bitcast<f32>(foot.key.w);
+    let fade = reach_fade(length(place), FOOT_REACH);
+    if (fade <= 0.0 || beside(place, place, 1.0)) {
+        return 0u;
+    }
+    var part: SplashPart;
+    if (number == 0u) {
+        let form = rain_foot_sheet(strength, age);
+        part = standing_sheet(place, vec3<f32>(0.0, 1.0, 0.0), form.x, form.y, form.z, fade, FOOT_JETS + rain_unit(foot.key.x));
+    } else if (number <= rain_foot_drop_count(strength)) {
+        let drop = rain_foot_drop(strength, foot.key.xyz, number - 1u);
+        let edge = place + RAIN_SOLE_M * drop.outward;
+        let now = rain_thrown_place(drop.drop.xyz, drop.drop.w, age);
+        // It ends where it falls back to the water's level.
+        if (age >= 0.0 && now.y >= 0.0) {
+            let before = rain_thrown_place(drop.drop.xyz, drop.drop.w, max(age - view.exposure, 0.0));
+            part = flying(edge + now, edge + before, drop.drop.w, min(age / view.exposure, 1.0), fade);
+        }
+    }
+    if (part.shape.w > 0.0) {
+        note(part, id, 0u);
+        return 1u;
+    }
+    return 0u;
+}
+
+fn cells_and_slots() -> u32 {
     let side = 2u * view.span + 1u;
     return side * side * u32(RAIN_SPLASH_SLOTS);
+}
+
+fn invocations() -> u32 {
+    return cells_and_slots() + view.feet * FOOT_PARTS;
 }
 
 // Error: places 1e-4 m, and as the functions say.
 @compute @workgroup_size(64)
 fn find(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x < invocations()) {
+    let cells = cells_and_slots();
+    if (id.x < cells) {
         places[id.x] = cell_and_slot(id.x);
+    } else if (id.x < invocations()) {
+        places[id.x] = part_of_step(id.x, id.x - cells);
     }
 }
 

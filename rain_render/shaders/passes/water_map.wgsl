@@ -91,7 +91,7 @@ fn local_share(place: vec2<f32>) -> f32 {
     var row = 1u;
     for (var i = 0u; i < u32(head.x); i += 1u) {
         let area = packed_area(row, place);
-        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition), head.z);
+        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition) * area.density, head.z);
         row = area.next;
     }
     return clamp(found.x * found.y / head.w, 0.0, 1.0);

@@ -2,6 +2,7 @@
 
 use glam::{Mat4, Vec3, Vec4};
 use rain_core::haze::{FOG_TABLE_KNOTS, LEAST_LAMP_M, RATE_KNOTS, RateExtinction};
+use rain_core::optics::{CHEAP_REFLECTED, CHEAP_REFRACTED, RainbowPhase};
 use rain_core::rainfall::Lamp;
 use rain_core::rainfall::areas::AreaFieldF32;
 
@@ -21,26 +22,47 @@ pub struct HazeAreas<'a> {
     pub weather_mm_h: f32,
 }
 
-/// Fog as an artist sets it, in place of the rain's.
+/// Far rain that is drawn as particles, for haze to leave out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HazeFar {
+    /// [`rain_core::rainfall::FarRain::share`]. Domain: [0, 0.95].
+    pub share: f32,
+    /// Extinction of the rain outside areas. Units: 1/m.
+    pub outside_per_m: f32,
+}
+
+/// Fog as an artist sets it, in place of the rain's or of a share of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HazeFog {
     /// Units: 1/m.
     pub density_per_m: f32,
-    /// Times the luminance of what surrounds the view; `None`: that itself.
-    pub colour: Option<Vec3>,
+    /// Times the luminance of what surrounds the view.
+    pub colour: Vec3,
+    /// How much of it has that colour; the rest that of what surrounds the view. Domain: [0, 1].
+    pub coloured: f32,
     /// How much of its colour it has lost. Domain: [0, 1].
     pub desaturation: f32,
+    /// How much of the rain's haze it takes the place of. Domain: [0, 1].
+    pub share: f32,
+}
+
+/// A rainbow in the haze.
+#[derive(Debug, Clone, Copy)]
+pub struct HazeBow<'a> {
+    /// Its light by angle.
+    pub phase: &'a RainbowPhase,
+    /// Gain; 1 is physical.
+    pub strength: f32,
 }
 
 /// One view of haze.
 #[derive(Debug, Clone, Copy)]
 pub struct HazeInput<'a> {
-    /// Clip from eye-relative world (rotation and projection, no translation); infinite reverse-Z.
+    /// Clip from eye-relative world (rotation, mirror and projection, no translation); infinite reverse-Z, the near plane
+    /// anywhere.
     pub clip_from_eye: Mat4,
     /// Where the view looks, unit.
     pub forward: Vec3,
-    /// Near plane of the projection. Units: m.
-    pub near_m: f32,
     /// Corner and size of the view in its target. Units: px.
     pub viewport_px: Vec4,
     /// Surroundings.
@@ -55,12 +77,22 @@ pub struct HazeInput<'a> {
     pub rates: &'a RateExtinction,
     /// `None`: the rain is the same everywhere.
     pub areas: Option<HazeAreas<'a>>,
+    /// `None`: no far rain is drawn.
+    pub far: Option<HazeFar>,
     /// Base of the cloud over the eye's height. Units: m.
     pub cloud_m: f32,
+    /// How far below it rain thins out, straight; 0: a sharp base. Units: m.
+    pub thin_m: f32,
     /// Longest way through the rain. Units: m. Domain: [10, 1e6].
     pub limit_m: f32,
     /// `None`: the haze of the rain.
     pub fog: Option<HazeFog>,
+    /// Extinction of mist, the same everywhere under the cloud. Units: 1/m.
+    pub mist_per_m: f32,
+    /// Height of the mirror over the eye, of a mirrored view: what lies under it has no haze. Units: m.
+    pub mirror_m: Option<f32>,
+    /// `None`: no rainbow.
+    pub bow: Option<HazeBow<'a>>,
     /// Relative to the eye, intensities exposed; the first [`MAX_HAZE_LAMPS`] glow, no smaller than 5 cm.
     pub lamps: &'a [Lamp],
 }
@@ -109,10 +141,32 @@ impl HazeInput<'_> {
         (self.limit_m / HAZE_FIRST_M as f32).ln_1p() / HAZE_INTERVALS as f32
     }
 
+    fn fog_share(&self) -> f32 {
+        self.fog.map_or(0.0, |fog| fog.share.clamp(0.0, 1.0))
+    }
+
+    /// What of the sun's light the haze shows: what drops turn away, not what they diffract; with a rainbow, what they send
+    /// after inner reflections is in that.
+    fn sunlight(&self) -> f32 {
+        let kept = match self.bow {
+            Some(_) => CHEAP_REFRACTED + CHEAP_REFLECTED,
+            None => 1.0,
+        };
+        let own = kept / self.efficiency;
+        own + (1.0 - own) * self.fog_share()
+    }
+
     /// The uniform of this view.
     #[must_use]
     pub fn uniform(&self) -> HazeView {
-        let eye_from_clip = self.clip_from_eye.inverse();
+        let depth_row = self.clip_from_eye.row(2);
+        // Directions do not depend on the near plane: here it lies a metre ahead.
+        let mut plain = self.clip_from_eye;
+        plain.x_axis.z = 0.0;
+        plain.y_axis.z = 0.0;
+        plain.z_axis.z = 0.0;
+        plain.w_axis.z = 1.0;
+        let eye_from_clip = plain.inverse();
         let [start, step] = azimuths(eye_from_clip, self.forward);
         let mut lamp: [HazeLamp; MAX_HAZE_LAMPS] = bytemuck::Zeroable::zeroed();
         for (slot, lamp) in lamp.iter_mut().zip(self.lamps) {
@@ -131,25 +185,36 @@ impl HazeInput<'_> {
                 .extend(self.lighting.environment_max_level)
                 .to_array(),
             ambient: self.lighting.ambient.extend(0.0).to_array(),
-            sun_direction: self.lighting.sun_direction.extend(0.0).to_array(),
+            sun_direction: self.lighting.sun_direction.extend(self.fog_share()).to_array(),
             sun: self.lighting.sun.extend(0.0).to_array(),
-            forward: self.forward.extend(self.near_m).to_array(),
+            forward: self.forward.extend(0.0).to_array(),
+            depth_row: depth_row.to_array(),
+            air: [
+                self.mist_per_m,
+                self.mirror_m.unwrap_or_default().max(0.0),
+                self.bow.map_or(0.0, |bow| bow.strength),
+                self.sunlight(),
+            ],
             viewport: self.viewport_px.to_array(),
             fog: self
                 .fog
-                .map_or(Vec4::ZERO, |fog| {
-                    fog.colour.unwrap_or_default().extend(fog.desaturation.clamp(0.0, 1.0))
-                })
+                .map_or(Vec4::ZERO, |fog| fog.colour.extend(fog.desaturation.clamp(0.0, 1.0)))
                 .to_array(),
             extinction: self.extinction_per_m,
             efficiency: self.efficiency,
             cloud: self.cloud_m,
             limit: self.limit_m,
-            artist: self.fog.map_or(-1.0, |fog| fog.density_per_m.max(0.0)),
-            coloured: self.fog.and_then(|fog| fog.colour).map_or(0.0, |_| 1.0),
+            artist: self.fog.map_or(0.0, |fog| fog.density_per_m.max(0.0)),
+            coloured: self.fog.map_or(0.0, |fog| fog.coloured.clamp(0.0, 1.0)),
             uneven: f32::from(u8::from(self.areas.is_some())),
             lamps: self.lamps.len().min(MAX_HAZE_LAMPS) as u32,
             grid: [start, step, self.scale(), RateExtinction::knots_per_ln() as f32],
+            far: [
+                self.far.map_or(0.0, |far| far.share),
+                self.far.map_or(0.0, |far| far.outside_per_m),
+                self.thin_m.clamp(0.0, self.cloud_m.max(0.0)),
+                0.0,
+            ],
             drawn: fours(&self.drawn_m),
             rates: fours(&self.rates.ln_per_m),
             lamp,

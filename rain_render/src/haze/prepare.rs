@@ -1,5 +1,6 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
+use rain_core::optics::RainbowPhase;
 use rain_core::rainfall::areas::MAX_PACKED_ROWS;
 
 use super::HazeInput;
@@ -20,6 +21,7 @@ pub struct HazeGpu {
     single: Overlay,
     several: Option<Overlay>,
     no_environment: wgpu::TextureView,
+    no_bow: wgpu::Buffer,
     sampler: wgpu::Sampler,
 }
 
@@ -38,13 +40,26 @@ pub struct HazeViewGpu {
     uniform: wgpu::Buffer,
     rows: wgpu::Buffer,
     grid: wgpu::Buffer,
+    /// Made for the first rainbow, and what it holds.
+    bow: Option<(wgpu::Buffer, RainbowPhase)>,
     pub(super) uneven: bool,
     pub(super) areas: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
 }
 
-const GRID_BYTES: usize = HAZE_AZIMUTHS as usize * (HAZE_INTERVALS as usize + 1) * 4;
+/// The whole rain, then the far rain.
+const GRID_BYTES: usize = 2 * HAZE_AZIMUTHS as usize * (HAZE_INTERVALS as usize + 1) * 4;
+const BOW_BYTES: usize = size_of::<RainbowPhase>();
 const ROWS_BYTES: usize = (MAX_PACKED_ROWS + 1) * 16;
+
+fn bow_buffer(device: &wgpu::Device) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("rain bow"),
+        size: BOW_BYTES as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
 
 fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
     let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
@@ -72,6 +87,7 @@ fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
             wgpu::TextureViewDimension::Cube,
         ),
         sampler_entry(4, fragment),
+        uniform_entry(5, fragment, BOW_BYTES),
     ];
     let shader = if multisampled {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -106,6 +122,7 @@ impl HazeGpu {
             add,
             single: overlay(device, false),
             several: None,
+            no_bow: bow_buffer(device),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
             sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
         }
@@ -155,6 +172,7 @@ impl HazeViewGpu {
                 GRID_BYTES,
                 wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
             ),
+            bow: None,
             uneven: false,
             areas: None,
             draw: None,
@@ -178,6 +196,13 @@ impl HazeViewGpu {
             queue.write_buffer(&self.rows, 0, bytemuck::cast_slice(&head));
             queue.write_buffer(&self.rows, 16, bytemuck::cast_slice(&areas.packed.rows));
         }
+        if let Some(bow) = &input.bow
+            && self.bow.as_ref().is_none_or(|(_, known)| known != bow.phase)
+        {
+            let (buffer, known) = self.bow.get_or_insert_with(|| (bow_buffer(device), *bow.phase));
+            *known = *bow.phase;
+            queue.write_buffer(buffer, 0, bytemuck::cast_slice(&known.rgb_per_sr));
+        }
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         if self.areas.is_none() {
             self.areas = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -191,17 +216,26 @@ impl HazeViewGpu {
             }));
         }
         let environment = textures.environment.unwrap_or(&gpu.no_environment);
-        self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("rain haze"),
-            layout: &gpu.overlay(samples).layout,
-            entries: &[
-                entry(0, self.uniform.as_entire_binding()),
-                entry(1, self.grid.as_entire_binding()),
-                entry(2, wgpu::BindingResource::TextureView(textures.scene_depth)),
-                entry(3, wgpu::BindingResource::TextureView(environment)),
-                entry(4, wgpu::BindingResource::Sampler(&gpu.sampler)),
-            ],
-        }));
+        self.draw = Some(
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("rain haze"),
+                layout: &gpu.overlay(samples).layout,
+                entries: &[
+                    entry(0, self.uniform.as_entire_binding()),
+                    entry(1, self.grid.as_entire_binding()),
+                    entry(2, wgpu::BindingResource::TextureView(textures.scene_depth)),
+                    entry(3, wgpu::BindingResource::TextureView(environment)),
+                    entry(4, wgpu::BindingResource::Sampler(&gpu.sampler)),
+                    entry(
+                        5,
+                        self.bow
+                            .as_ref()
+                            .map_or(&gpu.no_bow, |(buffer, _)| buffer)
+                            .as_entire_binding(),
+                    ),
+                ],
+            }),
+        );
     }
 
     /// Whether areas divide the rain of this view.
@@ -213,6 +247,7 @@ impl HazeViewGpu {
     /// GPU memory of this view. Units: bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<HazeView>() + ROWS_BYTES + GRID_BYTES
+        let bow = self.bow.as_ref().map_or(0, |_| BOW_BYTES);
+        size_of::<HazeView>() + ROWS_BYTES + GRID_BYTES + bow
     }
 }

@@ -12,6 +12,6 @@ mod encode;
 mod params;
 mod prepare;
 
-pub use encode::{encode_lattice, encode_lattice_coverage};
+pub use encode::{encode_lattice, encode_lattice_behind, encode_lattice_coverage};
 pub use params::LatticeInput;
 pub use prepare::{LatticeGpu, LatticeViewGpu};

@@ -3,6 +3,7 @@
 use glam::{Mat4, Vec3};
 use rain_core::rainfall::{Card, Lamp};
 
+use crate::glass::{self, Pane};
 use crate::gpu_types::{CoverParams, LatticeParams};
 use crate::lamps;
 use crate::rainfall::Lighting;
@@ -24,6 +25,8 @@ pub struct LatticeInput<'a> {
     pub fog: Vec3,
     /// Lamps near the view; the first [`rain_core::rainfall::MAX_LAMPS`] count.
     pub lamps: &'a [Lamp],
+    /// What is transparent before the view; the first [`crate::glass::MAX_PANES`] count.
+    pub panes: &'a [Pane],
     /// Cover map relative to the eye.
     pub cover: CoverParams,
 }
@@ -32,6 +35,7 @@ impl LatticeInput<'_> {
     /// The uniform of this view; `soft`: whether the scene's depth is there.
     pub(super) fn uniform(&self, soft: bool) -> LatticeParams {
         let (lamp, lamps) = lamps::slots(self.lamps);
+        let (pane, panes) = glass::slots(self.panes);
         LatticeParams {
             clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
             environment: Vec3::splat(self.lighting.environment_scale)
@@ -46,11 +50,12 @@ impl LatticeInput<'_> {
             soft: f32::from(u8::from(soft)),
             cards: self.cards.len() as u32,
             lamps,
-            pad_a: 0,
+            panes,
             pad_b: 0,
             pad_c: 0,
             cover: self.cover,
             lamp,
+            pane,
         }
     }
 }

@@ -5,7 +5,7 @@ use rain_core::rainfall::Card;
 use super::params::LatticeInput;
 use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::gpu_types::LatticeParams;
-use crate::overlay::{Overlay, OverlayKey};
+use crate::overlay::Overlay;
 use crate::rainfall::{DEPTH_FORMAT, RainfallTextures};
 use crate::streak_textures::StreakArray;
 
@@ -52,18 +52,17 @@ impl LatticeGpu {
         }
     }
 
-    /// Makes sure that the pipelines for a target exist; `coverage` asks for the mask's as well.
+    /// Makes sure that the draw pipelines for a target exist; `coverage` asks for the mask's as well, `behind` for those of
+    /// what lies behind glass.
     pub fn prepare_pipelines(
         &mut self,
         device: &wgpu::Device,
         format: wgpu::TextureFormat,
         samples: u32,
         coverage: bool,
+        behind: bool,
     ) {
-        self.draw.prepare(device, OverlayKey::colour(format, samples));
-        if coverage {
-            self.draw.prepare(device, OverlayKey::coverage(samples));
-        }
+        self.draw.prepare_all(device, format, samples, coverage, behind);
     }
 }
 
@@ -77,6 +76,7 @@ pub struct LatticeViewGpu {
     units_of: Option<u64>,
     capacity: usize,
     pub(super) count: u32,
+    pub(super) panes: u32,
     pub(super) group: Option<wgpu::BindGroup>,
 }
 
@@ -108,6 +108,7 @@ impl LatticeViewGpu {
             units_of: None,
             capacity: CAPACITY,
             count: 0,
+            panes: 0,
             group: None,
         }
     }
@@ -132,11 +133,9 @@ impl LatticeViewGpu {
                 mapped_at_creation: false,
             });
         }
-        queue.write_buffer(
-            &self.uniform,
-            0,
-            bytemuck::bytes_of(&input.uniform(textures.scene_depth.is_some())),
-        );
+        let uniform = input.uniform(textures.scene_depth.is_some());
+        self.panes = uniform.panes;
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         if !input.cards.is_empty() {
             queue.write_buffer(&self.cards, 0, bytemuck::cast_slice(input.cards));
         }
@@ -171,6 +170,12 @@ impl LatticeViewGpu {
     #[must_use]
     pub fn cards(&self) -> u32 {
         self.count
+    }
+
+    /// How much that is transparent this frame tells apart.
+    #[must_use]
+    pub fn panes(&self) -> u32 {
+        self.panes
     }
 
     /// GPU memory of this view. Units: bytes.

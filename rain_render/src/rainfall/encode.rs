@@ -11,7 +11,7 @@ pub fn encode_project(pass: &mut wgpu::ComputePass, gpu: &RainfallGpu, view: &Ra
     pass.dispatch_workgroups(view.drops.div_ceil(64), 1, 1);
 }
 
-/// Draws the projected streaks over a target of `format` with `samples` samples.
+/// Draws the projected streaks over a target of `format` with `samples` samples, but those behind glass.
 pub fn encode_draw(
     pass: &mut wgpu::RenderPass,
     gpu: &RainfallGpu,
@@ -22,9 +22,26 @@ pub fn encode_draw(
     encode(pass, gpu, view, OverlayKey::colour(format, samples));
 }
 
-/// Draws the streaks' coverage into a [`super::COVERAGE_FORMAT`] target.
+/// Draws the streaks behind glass, where there is any: before what is transparent is drawn.
+pub fn encode_behind(
+    pass: &mut wgpu::RenderPass,
+    gpu: &RainfallGpu,
+    view: &RainfallViewGpu,
+    format: wgpu::TextureFormat,
+    samples: u32,
+) {
+    if view.panes > 0 {
+        encode(pass, gpu, view, OverlayKey::colour(format, samples).behind());
+    }
+}
+
+/// Draws the coverage of all streaks into a [`super::COVERAGE_FORMAT`] target.
 pub fn encode_coverage(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, samples: u32) {
-    encode(pass, gpu, view, OverlayKey::coverage(samples));
+    let key = OverlayKey::coverage(samples);
+    if view.panes > 0 {
+        encode(pass, gpu, view, key.behind());
+    }
+    encode(pass, gpu, view, key);
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, key: OverlayKey) {

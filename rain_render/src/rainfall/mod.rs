@@ -9,6 +9,6 @@ mod encode;
 mod params;
 mod prepare;
 
-pub use encode::{encode_coverage, encode_draw, encode_project};
+pub use encode::{encode_behind, encode_coverage, encode_draw, encode_project};
 pub use params::{Lighting, RainfallInput, Shutter};
 pub use prepare::{COVERAGE_FORMAT, DEPTH_FORMAT, RainfallGpu, RainfallTextures, RainfallViewGpu};

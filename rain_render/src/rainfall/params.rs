@@ -4,6 +4,7 @@ use glam::{Mat4, Vec2, Vec3};
 use rain_core::hash::pcg3d;
 use rain_core::rainfall::{CLASS_COUNT, Container, DetailLaw, LEAD_CAP_M, LEAD_TIME_S, Lamp, RANGE_CAP_M, SizeClass};
 
+use crate::glass::{self, Pane};
 use crate::gpu_types::{CoverParams, RainfallClass, RainfallView};
 use crate::lamps;
 
@@ -62,6 +63,8 @@ pub struct RainfallInput<'a> {
     pub lighting: Lighting,
     /// Lamps near the view; the first [`rain_core::rainfall::MAX_LAMPS`] count.
     pub lamps: &'a [Lamp],
+    /// What is transparent before the view; the first [`crate::glass::MAX_PANES`] count.
+    pub panes: &'a [Pane],
     /// Cover map relative to the eye.
     pub cover: CoverParams,
 }
@@ -85,6 +88,7 @@ impl RainfallInput<'_> {
         }
         let lead = (self.eye_velocity_m_s * LEAD_TIME_S as f32).clamp_length_max(LEAD_CAP_M as f32);
         let (lamp, lamps) = lamps::slots(self.lamps);
+        let (pane, panes) = glass::slots(self.panes);
         let size = self.shutter.detail.map(DetailLaw::size_terms);
         RainfallView {
             clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
@@ -108,11 +112,12 @@ impl RainfallInput<'_> {
             soft: self.shutter.soft_m,
             drops: self.container.records.len() as u32,
             lamps,
-            pad_b: 0,
+            panes,
             pad_c: 0,
             cover: self.cover,
             classes,
             lamp,
+            pane,
         }
     }
 }

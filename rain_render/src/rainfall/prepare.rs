@@ -5,7 +5,7 @@ use crate::bindings::{
 };
 use crate::compose;
 use crate::gpu_types::{RainfallView, Streak};
-use crate::overlay::{Overlay, OverlayKey};
+use crate::overlay::Overlay;
 use crate::rainfall::RainfallInput;
 
 /// Format of the coverage mask: blendable everywhere.
@@ -44,6 +44,7 @@ pub struct RainfallViewGpu {
     streaks: wgpu::Buffer,
     capacity: usize,
     pub(super) drops: u32,
+    pub(super) panes: u32,
     pub(super) project: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
 }
@@ -93,18 +94,17 @@ impl RainfallGpu {
         }
     }
 
-    /// Makes sure that the draw pipeline for a target exists; `coverage` asks for the mask's as well.
+    /// Makes sure that the draw pipelines for a target exist; `coverage` asks for the mask's as well, `behind` for those of
+    /// what lies behind glass.
     pub fn prepare_pipelines(
         &mut self,
         device: &wgpu::Device,
         format: wgpu::TextureFormat,
         samples: u32,
         coverage: bool,
+        behind: bool,
     ) {
-        self.draw.prepare(device, OverlayKey::colour(format, samples));
-        if coverage {
-            self.draw.prepare(device, OverlayKey::coverage(samples));
-        }
+        self.draw.prepare_all(device, format, samples, coverage, behind);
     }
 }
 
@@ -124,6 +124,7 @@ impl RainfallViewGpu {
             streaks,
             capacity: 1024,
             drops: 0,
+            panes: 0,
             project: None,
             draw: None,
         }
@@ -159,11 +160,13 @@ impl RainfallViewGpu {
     ) {
         let records = &input.container.records;
         self.drops = records.len() as u32;
+        let uniform = input.uniform();
+        self.panes = uniform.panes;
         if records.len() > self.capacity {
             self.capacity = records.len().next_power_of_two();
             (self.records, self.streaks) = Self::buffers(device, self.capacity);
         }
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform()));
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         if !records.is_empty() {
             queue.write_buffer(&self.records, 0, bytemuck::cast_slice(records));
         }
@@ -200,6 +203,12 @@ impl RainfallViewGpu {
     #[must_use]
     pub fn drops(&self) -> u32 {
         self.drops
+    }
+
+    /// How much that is transparent this frame tells apart.
+    #[must_use]
+    pub fn panes(&self) -> u32 {
+        self.panes
     }
 
     /// GPU memory of this view. Units: bytes.

@@ -15,7 +15,7 @@ pub fn encode_splash_make(pass: &mut wgpu::ComputePass, gpu: &SplashGpu, view: &
     pass.dispatch_workgroups(view.room.div_ceil(64), 1, 1);
 }
 
-/// Draws them over a target of `format` with `samples` samples.
+/// Draws them over a target of `format` with `samples` samples, but those behind glass.
 pub fn encode_splash_draw(
     pass: &mut wgpu::RenderPass,
     gpu: &SplashGpu,
@@ -26,9 +26,26 @@ pub fn encode_splash_draw(
     encode(pass, gpu, view, OverlayKey::colour(format, samples));
 }
 
-/// Draws their coverage into a [`crate::rainfall::COVERAGE_FORMAT`] target.
+/// Draws those behind glass, where there is any: before what is transparent is drawn.
+pub fn encode_splash_behind(
+    pass: &mut wgpu::RenderPass,
+    gpu: &SplashGpu,
+    view: &SplashViewGpu,
+    format: wgpu::TextureFormat,
+    samples: u32,
+) {
+    if view.panes > 0 {
+        encode(pass, gpu, view, OverlayKey::colour(format, samples).behind());
+    }
+}
+
+/// Draws the coverage of all into a [`crate::rainfall::COVERAGE_FORMAT`] target.
 pub fn encode_splash_coverage(pass: &mut wgpu::RenderPass, gpu: &SplashGpu, view: &SplashViewGpu, samples: u32) {
-    encode(pass, gpu, view, OverlayKey::coverage(samples));
+    let key = OverlayKey::coverage(samples);
+    if view.panes > 0 {
+        encode(pass, gpu, view, key.behind());
+    }
+    encode(pass, gpu, view, key);
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &SplashGpu, view: &SplashViewGpu, key: OverlayKey) {

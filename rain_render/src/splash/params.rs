@@ -1,15 +1,36 @@
 //! Plain inputs of the pass and how they become the uniform.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
-use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOTS, SplashAnchor, SplashField};
+use rain_core::rainfall::Lamp;
+use rain_core::splash::{FOOT_DROPS, SPLASH_CELL_M, SPLASH_SLOTS, SplashAnchor, SplashField};
 
-use crate::gpu_types::{CoverParams, LevelMapParams, SplashView};
+use crate::glass::{self, Pane};
+use crate::gpu_types::{CoverParams, LevelMapParams, SplashFoot, SplashView};
+use crate::lamps;
 use crate::rainfall::Lighting;
 
 /// Furthest reach of splashes. Units: m.
 pub(super) const LARGEST_REACH_M: f32 = 50.0;
 /// Shortest shutter time. Units: s.
 const LEAST_EXPOSURE_S: f32 = 1e-4;
+
+/// Steps whose splashes a view draws; more are left out. Units: none.
+pub const MAX_FEET: usize = 8;
+/// Invocations that look for the parts of a step: its sheet and its drops.
+const FOOT_PARTS: u32 = FOOT_DROPS + 1;
+
+/// A step in water.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepSplash {
+    /// Where, on the water, relative to the eye. Units: m.
+    pub place_m: Vec3,
+    /// Since it came down. Units: s.
+    pub age_s: f32,
+    /// How strong. Units: none. Domain: [0, 1].
+    pub strength: f32,
+    /// Tells it from all others.
+    pub key: [u32; 3],
+}
 
 /// One view of splashes.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +69,12 @@ pub struct SplashInput<'a> {
     pub capacity: u32,
     /// Surroundings.
     pub lighting: Lighting,
+    /// Lamps near the view; the first [`rain_core::rainfall::MAX_LAMPS`] count.
+    pub lamps: &'a [Lamp],
+    /// What is transparent before the view; the first [`crate::glass::MAX_PANES`] count.
+    pub panes: &'a [Pane],
+    /// Steps in water; the first [`MAX_FEET`] count.
+    pub feet: &'a [StepSplash],
     /// Cover map relative to the eye.
     pub cover: CoverParams,
     /// Standing water relative to the eye.
@@ -65,10 +92,10 @@ impl SplashInput<'_> {
         (self.reach_m() / SPLASH_CELL_M as f32).ceil() as u32 + 1
     }
 
-    /// Cells and slots that are looked through.
+    /// Cells and slots that are looked through, and parts of steps.
     pub(super) fn invocations(&self) -> u32 {
         let side = 2 * self.span() + 1;
-        side * side * SPLASH_SLOTS
+        side * side * SPLASH_SLOTS + self.feet.len().min(MAX_FEET) as u32 * FOOT_PARTS
     }
 
     /// The uniform of this view.
@@ -80,6 +107,16 @@ impl SplashInput<'_> {
             classes.iter_mut().zip(self.field.diameters).zip(self.field.weights)
         {
             *slot = [start, span, bend, weight];
+        }
+        let (lamp, lamps) = lamps::slots(self.lamps);
+        let (pane, panes) = glass::slots(self.panes);
+        let mut foot = [bytemuck::Zeroable::zeroed(); MAX_FEET];
+        for (slot, step) in foot.iter_mut().zip(self.feet) {
+            let [a, b, c] = step.key;
+            *slot = SplashFoot {
+                place: step.place_m.extend(step.age_s).to_array(),
+                key: [a, b, c, held(step.strength, 0.0, 1.0).to_bits()],
+            };
         }
         SplashView {
             clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
@@ -107,14 +144,17 @@ impl SplashInput<'_> {
             since: self.anchor.since_s,
             span: self.span(),
             capacity: self.capacity,
-            pad_a: 0,
-            pad_b: 0,
-            pad_c: 0,
+            lamps,
+            panes,
+            feet: self.feet.len().min(MAX_FEET) as u32,
             cover: self.cover,
             levels: self.levels,
             counts: self.field.count_limits,
             limits: self.field.class_limits,
             classes,
+            lamp,
+            pane,
+            foot,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::bindings::{
 };
 use crate::compose;
 use crate::gpu_types::{SplashDraw, SplashFind, SplashPart, SplashView};
-use crate::overlay::{Overlay, OverlayKey};
+use crate::overlay::Overlay;
 use crate::rainfall::DEPTH_FORMAT;
 
 use super::SplashInput;
@@ -50,6 +50,7 @@ pub struct SplashViewGpu {
     capacity: u32,
     pub(super) invocations: u32,
     pub(super) room: u32,
+    pub(super) panes: u32,
     pub(super) make: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
 }
@@ -111,18 +112,17 @@ impl SplashGpu {
         }
     }
 
-    /// Makes sure that the draw pipeline for a target exists; `coverage` asks for the mask's as well.
+    /// Makes sure that the draw pipelines for a target exist; `coverage` asks for the mask's as well, `behind` for those of
+    /// what lies behind glass.
     pub fn prepare_pipelines(
         &mut self,
         device: &wgpu::Device,
         format: wgpu::TextureFormat,
         samples: u32,
         coverage: bool,
+        behind: bool,
     ) {
-        self.draw.prepare(device, OverlayKey::colour(format, samples));
-        if coverage {
-            self.draw.prepare(device, OverlayKey::coverage(samples));
-        }
+        self.draw.prepare_all(device, format, samples, coverage, behind);
     }
 }
 
@@ -151,6 +151,7 @@ impl SplashViewGpu {
             capacity: 1,
             invocations: 0,
             room: 0,
+            panes: 0,
             make: None,
             draw: None,
         }
@@ -186,7 +187,9 @@ impl SplashViewGpu {
                 storage | wgpu::BufferUsages::COPY_SRC,
             );
         }
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform()));
+        let uniform = input.uniform();
+        self.panes = uniform.panes;
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view =
             |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();
@@ -218,6 +221,12 @@ impl SplashViewGpu {
                 entry(2, wgpu::BindingResource::TextureView(&scene)),
             ],
         }));
+    }
+
+    /// How much that is transparent this frame tells apart.
+    #[must_use]
+    pub fn panes(&self) -> u32 {
+        self.panes
     }
 
     /// GPU memory of this view. Units: bytes.

@@ -1,6 +1,7 @@
 //! Splash thresholds and crowns.
 
 mod field;
+mod foot;
 mod formulas;
 mod thrown;
 

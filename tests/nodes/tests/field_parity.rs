@@ -6,6 +6,7 @@ use rain_core::rainfall::{
     Spectrum, Thinning, terminal_velocity, visible_range_m,
 };
 use rain_render::cover::open_sky;
+use rain_render::glass::Pane;
 use rain_render::gpu_types::Streak;
 use rain_render::rainfall::{
     Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, Shutter, encode_project,
@@ -24,6 +25,7 @@ pub struct FieldView {
     pub seconds: f64,
     pub wind_m_s: glam::DVec3,
     pub lamps: Vec<Lamp>,
+    pub panes: Vec<Pane>,
     pub detail: Option<DetailLaw>,
 }
 
@@ -39,6 +41,7 @@ impl Default for FieldView {
             seconds: 1234.5,
             wind_m_s: glam::DVec3::new(3.0, 0.0, -1.0),
             lamps: Vec::new(),
+            panes: Vec::new(),
             detail: None,
         }
     }
@@ -118,6 +121,7 @@ impl FieldView {
                 sun: Vec3::ZERO,
             },
             lamps: &self.lamps,
+            panes: &self.panes,
             cover: open_sky(),
         };
         let mut view = RainfallViewGpu::new(&gpu.device);

@@ -5,14 +5,17 @@ use rain_core::haze::{
     FogTable, HazeSharing, LUMA_LINEAR, RateExtinction, cone_span_m, desaturated, extinction_per_m, lamp_glow_per_m,
 };
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32, AreaRain, AreaSettings, AreaShape};
-use rain_core::rainfall::{CLASS_COUNT, Distribution, Lamp, Spectrum};
+use rain_core::rainfall::{CLASS_COUNT, Distribution, FarAccount, FarEye, Lamp, Spectrum};
 use rain_render::haze::{
-    HazeAreas, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    HazeAreas, HazeBow, HazeFar, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
 };
 use rain_render::rainfall::{DEPTH_FORMAT, Lighting};
 
 use crate::device::{Device, device, kernel, library};
 use crate::maps::read_map;
+use crate::rain_areas::painting;
+
+mod air;
 
 const SIDE: u32 = 64;
 const NEAR_M: f32 = 0.1;
@@ -32,13 +35,21 @@ struct Shot<'a> {
     rate: f64,
     drawn_m: [f32; 64],
     areas: Option<HazeAreas<'a>>,
+    far: Option<HazeFar>,
     cloud_m: f32,
+    thin_m: f32,
     fog: Option<HazeFog>,
+    mist_per_m: f32,
+    bow: Option<HazeBow<'a>>,
+    /// Where it stands, and its illuminance.
+    sun: [Vec3; 2],
     lamps: &'a [Lamp],
     ambient: Vec3,
     background: [f64; 3],
     /// Distance of a wall across the view; none: sky.
     wall_m: Option<f32>,
+    /// Height of a mirror over the eye, in whose picture nothing nearer is drawn.
+    mirror_m: Option<f32>,
     samples: u32,
 }
 
@@ -49,12 +60,18 @@ impl Default for Shot<'_> {
             rate: 25.0,
             drawn_m: [0.0; 64],
             areas: None,
+            far: None,
             cloud_m: 1000.0,
+            thin_m: 0.0,
             fog: None,
+            mist_per_m: 0.0,
+            bow: None,
+            sun: [Vec3::Y, Vec3::ZERO],
             lamps: &[],
             ambient: Vec3::ZERO,
             background: [1.0; 3],
             wall_m: Some(100.0),
+            mirror_m: None,
             samples: 1,
         }
     }
@@ -71,6 +88,42 @@ impl Shot<'_> {
         (self.rotation.as_dquat() * ahead).normalize()
     }
 
+    /// Clip from view.
+    fn projection(&self) -> Mat4 {
+        let f = 1.0 / HALF;
+        let mut projection = Mat4::from_cols(
+            Vec4::new(f, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, f, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, 0.0, -1.0),
+            Vec4::new(0.0, 0.0, NEAR_M, 0.0),
+        );
+        if let Some(height) = self.mirror_m {
+            // The near plane is the mirror: the third row after Lengyel 2005, as Bevy has it.
+            let plane = (self.rotation.inverse() * Vec3::Y).extend(-height);
+            let corner = projection.inverse() * Vec4::new(plane.x.signum(), plane.y.signum(), 0.0, 1.0);
+            let row = Vec4::NEG_Z - plane * (-corner.z / plane.dot(corner));
+            projection.x_axis.z = row.x;
+            projection.y_axis.z = row.y;
+            projection.z_axis.z = row.z;
+            projection.w_axis.z = row.w;
+        }
+        projection
+    }
+
+    /// How far a line of sight goes in a picture whose near plane is a mirror. Units: m.
+    fn mirrored_way(&self, towards: DVec3) -> f64 {
+        let clip_from_eye = self.projection().as_dmat4() * glam::DMat4::from_quat(self.rotation.inverse().as_dquat());
+        let clip = clip_from_eye * towards.extend(0.0);
+        let depth = self.wall_m.map_or(0.0, |wall| f64::from(NEAR_M / wall));
+        let place = clip_from_eye.inverse() * glam::DVec4::new(clip.x / clip.w, clip.y / clip.w, depth, 1.0);
+        let way = if place.w > 0.0 {
+            (place.truncate() / place.w).length()
+        } else {
+            f64::INFINITY
+        };
+        way.min(f64::from(self.cloud_m) / towards.y).min(LIMIT_M.into())
+    }
+
     /// How far that reaches under the cloud. Units: m.
     fn way(&self, towards: DVec3) -> f64 {
         let ahead = towards.dot(self.rotation.as_dquat() * DVec3::NEG_Z);
@@ -84,13 +137,7 @@ impl Shot<'_> {
     }
 
     fn take(&self, gpu: &Device) -> Vec<[f32; 4]> {
-        let f = 1.0 / HALF;
-        let projection = Mat4::from_cols(
-            Vec4::new(f, 0.0, 0.0, 0.0),
-            Vec4::new(0.0, f, 0.0, 0.0),
-            Vec4::new(0.0, 0.0, 0.0, -1.0),
-            Vec4::new(0.0, 0.0, NEAR_M, 0.0),
-        );
+        let projection = self.projection();
         let texture = |format, samples, more: wgpu::TextureUsages| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
@@ -113,23 +160,27 @@ impl Shot<'_> {
         let input = HazeInput {
             clip_from_eye: projection * Mat4::from_quat(self.rotation.inverse()),
             forward: self.rotation * Vec3::NEG_Z,
-            near_m: NEAR_M,
             viewport_px: Vec4::new(0.0, 0.0, SIDE as f32, SIDE as f32),
             lighting: Lighting {
                 environment_scale: 0.0,
                 environment_max_level: 0.0,
                 ambient: self.ambient,
-                sun_direction: Vec3::Y,
-                sun: Vec3::ZERO,
+                sun_direction: self.sun[0],
+                sun: self.sun[1],
             },
             extinction_per_m: extinction_per_m(&spectrum(self.rate), 2.0) as f32,
             efficiency: 2.0,
             drawn_m: self.drawn_m,
             rates: &rates,
             areas: self.areas,
+            far: self.far,
             cloud_m: self.cloud_m,
+            thin_m: self.thin_m,
             limit_m: LIMIT_M,
             fog: self.fog,
+            mist_per_m: self.mist_per_m,
+            mirror_m: self.mirror_m,
+            bow: self.bow,
             lamps: self.lamps,
         };
         let mut haze = HazeGpu::new(&gpu.device);
@@ -302,8 +353,10 @@ fn the_artists_fog_has_its_own_density_and_loses_its_colour() {
             background: [0.0; 3],
             fog: Some(HazeFog {
                 density_per_m: 0.004,
-                colour: Some(Vec3::new(0.2, 0.5, 0.9)),
+                colour: Vec3::new(0.2, 0.5, 0.9),
+                coloured: 1.0,
                 desaturation,
+                share: 1.0,
             }),
             ..Shot::default()
         };
@@ -355,6 +408,8 @@ fn field() -> AreaField {
             shape,
             rain,
             transition_m,
+            // The polygon is painted.
+            density: (transition_m == 30.0).then(|| painting(DVec2::new(330.0, 190.0))),
             ..AreaSettings::default()
         };
         settings.check().expect("an area");
@@ -548,5 +603,142 @@ fn four_samples_show_what_one_shows() {
     };
     for (a, b) in one.take(&gpu).iter().zip(four.take(&gpu)) {
         assert!((a[0] - b[0]).abs() < 2.0 * HALF_STEP as f32, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn haze_leaves_out_what_is_drawn_as_far_rain() {
+    let Some(gpu) = device() else { return };
+    let field = field();
+    let weather = 5.0;
+    let mut packed = AreaFieldF32::default();
+    assert!(field.pack(DVec2::ZERO, LIMIT_M.into(), &mut packed));
+    let rates = RateExtinction::new(Distribution::MarshallPalmer, 2.0);
+    let eye = FarEye {
+        eye_m: DVec3::ZERO,
+        areas: &field,
+        weather_mm_h: weather,
+        rates: &rates,
+    };
+    let mut account = FarAccount::default();
+    let mut seen = 0;
+    for (wall, turn) in [(None, 0.0), (Some(3500.0), 0.1), (Some(900.0), -0.2), (Some(40.0), 0.4)] {
+        let rotation = Quat::from_rotation_y(turn) * Quat::from_rotation_x(0.25);
+        let ahead = (rotation * Vec3::NEG_Z).as_dvec3();
+        account.look(&eye, DVec2::new(ahead.x, ahead.z), 0.8, 257, LIMIT_M.into());
+        let far = HazeFar {
+            share: 0.6,
+            outside_per_m: account.outside_per_m() as f32,
+        };
+        let shot = |far: Option<HazeFar>| Shot {
+            rotation,
+            rate: field.rate_at(DVec2::ZERO, weather),
+            wall_m: wall,
+            areas: Some(HazeAreas {
+                packed: &packed,
+                weather_mm_h: weather as f32,
+            }),
+            far,
+            thin_m: 400.0,
+            ..Shot::default()
+        };
+        let mut whole = Vec::new();
+        shot(None).each(&gpu, |_, rgb| whole.push(rgb[0]));
+        let (mut sums, mut number) = ([0.0; 2], 0);
+        let left = shot(Some(far));
+        left.each(&gpu, |towards, rgb| {
+            let before = whole[number];
+            number += 1;
+            if number % 5 != 0 || before < 0.05 {
+                return;
+            }
+            let found = (rgb[0] / before).ln();
+            let expected = 0.6
+                * account.far_depth(
+                    &eye,
+                    towards,
+                    left.way(towards),
+                    left.cloud_m.into(),
+                    left.thin_m.into(),
+                );
+            assert!(found > -2.0 * HALF_STEP / before, "haze only ever loses: {found}");
+            sums[0] += found;
+            sums[1] += expected;
+            seen += usize::from(expected > 0.05);
+        });
+        // Both are grids along azimuths, of different knots.
+        let allowed = 0.03 * sums[1] + 4.0 * HALF_STEP * (number / 5) as f64;
+        assert!((sums[0] - sums[1]).abs() < allowed, "{wall:?}: {sums:?}");
+        assert_eq!(
+            wall == Some(40.0),
+            sums[1] < 1.0,
+            "nothing is far rain near the eye: {sums:?}"
+        );
+    }
+    assert!(seen > 300, "{seen}");
+}
+
+#[test]
+fn rain_thins_out_below_its_cloud() {
+    let Some(gpu) = device() else { return };
+    let field = field();
+    let mut packed = AreaFieldF32::default();
+    assert!(field.pack(DVec2::ZERO, LIMIT_M.into(), &mut packed));
+    let areas = HazeAreas {
+        packed: &packed,
+        weather_mm_h: 5.0,
+    };
+    let even = extinction_per_m(&spectrum(2.0), 2.0);
+    for uneven in [false, true] {
+        let shot = Shot {
+            rotation: Quat::from_rotation_x(0.3),
+            rate: if uneven { field.rate_at(DVec2::ZERO, 5.0) } else { 2.0 },
+            wall_m: None,
+            cloud_m: 700.0,
+            thin_m: 300.0,
+            areas: uneven.then_some(areas),
+            ..Shot::default()
+        };
+        let (mut sums, mut number, mut thinned) = ([0.0; 2], 0, 0);
+        shot.each(&gpu, |towards, rgb| {
+            number += 1;
+            let way = shot.way(towards);
+            if number % 11 != 0 || towards.y < 0.01 {
+                return;
+            }
+            const PIECES: u32 = 40;
+            let step = way / f64::from(PIECES);
+            let expected: f64 = (0..PIECES)
+                .map(|i| {
+                    let (low, high) = (step * f64::from(i), step * f64::from(i + 1));
+                    let share = rain_core::rainfall::cloud_share(towards.y * 0.5 * (low + high), 700.0, 300.0);
+                    let depth = if uneven {
+                        field.along(towards * low, towards * high, 5.0, |rate| {
+                            extinction_per_m(&spectrum(rate), 2.0)
+                        })
+                    } else {
+                        even * step
+                    };
+                    depth * share
+                })
+                .sum();
+            if expected < 2.0 {
+                let found = -rgb[0].ln();
+                sums[0] += found;
+                sums[1] += expected;
+                thinned += usize::from(way < f64::from(LIMIT_M));
+                if !uneven {
+                    assert!(
+                        (found - expected).abs() < 0.002 * expected + HALF_STEP / rgb[0],
+                        "{found} {expected}"
+                    );
+                }
+            }
+        });
+        let allowed = 0.01 * sums[1] + HALF_STEP * f64::from(number / 11);
+        assert!(
+            thinned > 100 && (sums[0] - sums[1]).abs() < allowed,
+            "{uneven}: {sums:?} {thinned}"
+        );
     }
 }

@@ -43,8 +43,8 @@ impl Scene {
         encode_streak_textures(&mut encoder, &pipelines, &mut array);
         gpu.queue.submit([encoder.finish()]);
         let mut lattice = LatticeGpu::new(&gpu.device);
-        lattice.prepare_pipelines(&gpu.device, COLOUR, 1, true);
-        lattice.prepare_pipelines(&gpu.device, COLOUR, 4, false);
+        lattice.prepare_pipelines(&gpu.device, COLOUR, 1, true, false);
+        lattice.prepare_pipelines(&gpu.device, COLOUR, 4, false, false);
         Self {
             cards: cards(&textures, 100.0),
             set: StreakTextures::bake(&textures).expect("a set"),
@@ -205,6 +205,7 @@ fn shoot(gpu: &Device, scene: &Scene, shot: &Shot, background: f64, coverage: bo
         lighting: lighting(shot.ambient),
         fog: shot.fog,
         lamps: shot.lamps,
+        panes: &[],
         cover: shot.roof_m.map_or_else(open_sky, roof_params),
     };
     let mut view = LatticeViewGpu::new(&gpu.device);

@@ -26,10 +26,11 @@ pub fn to_half(x: f32) -> u16 {
     sign | (exponent.min(30) as u16) << 10 | (bits >> 13 & 1023) as u16
 }
 
-/// A level of a four-channel map of half floats, row by row.
+/// A level of a map of half floats, row by row; channels that it has not are 0.
 pub fn read_map(gpu: &Device, map: &wgpu::Texture, level: u32) -> Vec<[f32; 4]> {
     let (width, height) = (map.width() >> level, map.height() >> level);
-    let row = (width * 8).next_multiple_of(256);
+    let texel_bytes = map.format().block_copy_size(None).expect("a colour");
+    let row = (width * texel_bytes).next_multiple_of(256);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: u64::from(row * height),
@@ -62,8 +63,15 @@ pub fn read_map(gpu: &Device, map: &wgpu::Texture, level: u32) -> Vec<[f32; 4]> 
     let bytes = gpu.read(&buffer, u64::from(row * height));
     bytes
         .chunks_exact(row as usize)
-        .flat_map(|row| row[..width as usize * 8].chunks_exact(8))
-        .map(|texel| std::array::from_fn(|c| from_half(u16::from_le_bytes([texel[2 * c], texel[2 * c + 1]]))))
+        .flat_map(|row| row[..(width * texel_bytes) as usize].chunks_exact(texel_bytes as usize))
+        .map(|texel| {
+            let half = |c: usize| {
+                texel
+                    .get(2 * c..2 * c + 2)
+                    .map_or(0, |two| u16::from_le_bytes([two[0], two[1]]))
+            };
+            std::array::from_fn(|c| from_half(half(c)))
+        })
         .collect()
 }
 

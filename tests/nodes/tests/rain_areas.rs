@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use rain_core::rainfall::areas::{
-    AreaField, AreaFieldF32, AreaRain, AreaSettings, AreaShape, border_weight_f32, ellipse_distance, polygon_distance,
+    AreaField, AreaFieldF32, AreaRain, AreaSettings, AreaShape, DensityMap, border_weight_f32, ellipse_distance,
+    polygon_distance,
 };
 use rain_core::weather::{ColumnF32, ColumnRules, SurfaceClass};
 use rain_render::cover::open_sky;
@@ -73,6 +74,12 @@ fn area(centre_m: DVec2, shape: AreaShape, rain: AreaRain, transition_m: f64) ->
     area
 }
 
+/// 9 × 7 cells, bright and dark.
+pub fn painting(size_m: DVec2) -> DensityMap {
+    let values = (0..63_u32).map(|i| ((i * 97 + i * i * 31) % 256) as u8).collect();
+    DensityMap::new(size_m, [9, 7], values).expect("a painting")
+}
+
 #[test]
 fn the_water_map_gets_each_texels_own_rain() {
     let Some(gpu) = device() else { return };
@@ -95,15 +102,18 @@ fn the_water_map_gets_each_texels_own_rain() {
             AreaRain::Rate(60.0),
             1.0,
         ),
-        area(
-            at + DVec2::new(8.0, -6.0),
-            AreaShape::Ellipse {
-                radii_m: DVec2::new(9.0, 3.0),
-                heading_rad: 0.6,
-            },
-            AreaRain::OfWeather(4.0),
-            2.0,
-        ),
+        AreaSettings {
+            density: Some(painting(DVec2::new(12.0, 8.0))),
+            ..area(
+                at + DVec2::new(8.0, -6.0),
+                AreaShape::Ellipse {
+                    radii_m: DVec2::new(9.0, 3.0),
+                    heading_rad: 0.6,
+                },
+                AreaRain::OfWeather(4.0),
+                2.0,
+            )
+        },
         area(at, AreaShape::Circle { radius_m: 2.0 }, AreaRain::Scale(0.0), 1.5),
         area(
             at + 500.0,

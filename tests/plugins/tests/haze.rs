@@ -1,12 +1,18 @@
 //! Haze in a Bevy app: when it is drawn and when it is skipped, and that drops and haze share one optical depth.
 
+use bevy::asset::RenderAssetUsages;
 use bevy::ecs::system::RunSystemOnce;
+use bevy::light::EnvironmentMapLight;
 use bevy::prelude::*;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
+use bevy::render::render_resource::{
+    Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+};
 use image::RgbImage;
-use rain_core::haze::{HazeSharing, extinction_per_m};
+use rain_core::haze::{HazeSharing, extinction_per_m, mist_extinction_per_m};
 use rain_core::rainfall::areas::{AreaRain, AreaSettings, AreaShape};
 use rain_core::rainfall::{CLASS_COUNT, DrawRange, SizeClass};
+use rain_plugins::haze::FarRainViewFrame;
 use rain_plugins::prelude::*;
 use rain_plugins::rainfall::RainViewFrame;
 use rain_plugins::render_adapter::{MaskKind, mask_image};
@@ -359,4 +365,243 @@ fn a_lamp_has_a_halo_in_rain_that_fades_outwards_and_none_behind_a_wall() {
     assert!(dry.iter().all(|v| *v < 1.0), "{dry:?}");
     assert!(wet[0] > 20.0 && wet.windows(2).all(|w| w[0] > w[1]), "{wet:?}");
     assert!(hidden.iter().all(|v| *v < 2.0), "{hidden:?}");
+}
+
+#[test]
+fn far_rain_is_drawn_where_a_shower_is_in_view_from_outside_and_its_curtain_stays_as_dense() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = hazy();
+    world::ground(test.world());
+    test.world().spawn(Weather::rain(0.0));
+    let area = |z: f64| {
+        RainArea(AreaSettings {
+            centre_m: bevy::math::DVec2::new(0.0, z),
+            shape: AreaShape::Circle { radius_m: 400.0 },
+            rain: AreaRain::Rate(25.0),
+            transition_m: 60.0,
+            ..default()
+        })
+    };
+    let shower = test.world().spawn(area(-900.0)).id();
+    let mask = with_mask(&mut test);
+    let camera = test.camera;
+    test.look(Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.0, 2.0, -10.0));
+    let draws = |test: &mut TestApp, far: bool| {
+        test.world().get_mut::<RainView>(camera).expect("a view").far_rain = Some(far);
+        test.frames(3, FRAME);
+        test.reset();
+        test.frames(3, FRAME);
+        test.recorded(PassName::FarRain)
+    };
+    // Mean over the middle of the picture above the horizon, and several moments: particles are few.
+    let mean = |test: &mut TestApp| {
+        let mut sum = 0.0;
+        for _ in 0..6 {
+            test.frames(40, FRAME);
+            let obscured = read(test, &mask);
+            sum += (4..30_u32)
+                .flat_map(|y| (44..84_u32).map(move |x| (y * SIZE[0] + x) as usize))
+                .map(|i| obscured[i] / (6.0 * 26.0 * 40.0))
+                .sum::<f64>();
+        }
+        sum
+    };
+    assert_eq!(draws(&mut test, false), 0);
+    assert_eq!(test.skipped(PassName::FarRain, SkipReason::Disabled), 3);
+    let curtain = mean(&mut test);
+    assert_eq!(draws(&mut test, true), 3);
+    let frame = test.world().get::<FarRainViewFrame>(camera).expect("a view");
+    let rain = frame.rain().expect("far rain");
+    assert!(
+        rain.share > 0.2 && rain.particles.len() > 300,
+        "{} {}",
+        rain.share,
+        rain.particles.len()
+    );
+    let fit = rain.containers[0];
+    assert!(
+        (fit.distance_m - 500.0).abs() < 1e-3 && (fit.anchor_m.y + 500.0).abs() < 1e-3,
+        "{fit:?}"
+    );
+    let shafts = mean(&mut test);
+    assert!(
+        curtain > 0.3 && (shafts / curtain - 1.0).abs() < 0.05,
+        "{shafts}, not {curtain}"
+    );
+    // Behind the eye, about it, and gone: no pass.
+    for place in [Some(900.0), Some(0.0), None] {
+        match place {
+            Some(z) => test.world().entity_mut(shower).insert(area(z)),
+            None => test.world().entity_mut(shower).remove::<RainArea>(),
+        };
+        assert_eq!(draws(&mut test, true), 0, "{place:?}");
+        assert_eq!(test.skipped(PassName::FarRain, SkipReason::NoRain), 3, "{place:?}");
+    }
+    // The artists' fog is not the rain's: nothing is taken off it.
+    test.world().entity_mut(shower).insert(area(-900.0));
+    assert_eq!(draws(&mut test, true), 3);
+    set(&mut test, |s| s.artist = Some(ArtistFog::default()));
+    assert_eq!(test.recorded(PassName::FarRain), 0);
+    set(&mut test, |s| {
+        s.artist = None;
+        s.far_rain.budget = 0;
+    });
+    assert_eq!(test.recorded(PassName::FarRain), 0);
+}
+
+#[test]
+fn humid_air_is_misty_without_rain() {
+    if !gpu::available() {
+        return;
+    }
+    let mut before = 0.0;
+    for humidity in [0.8, 0.98, 0.999] {
+        let mut test = hazy();
+        world::block(
+            test.world(),
+            "wall",
+            Vec3::new(-80.0, -10.0, -201.0),
+            Vec3::new(80.0, 80.0, -200.0),
+            [0.1; 3],
+        );
+        let conditions = WeatherConditions {
+            relative_humidity: humidity,
+            ..WeatherConditions::default()
+        };
+        test.world().spawn(Weather {
+            conditions,
+            ..default()
+        });
+        let mask = with_mask(&mut test);
+        test.look(Vec3::new(0.0, 12.0, 0.0), Vec3::new(0.0, 12.0, -10.0));
+        test.frames(4, FRAME);
+        assert_eq!(test.recorded(PassName::Haze), 0, "off by default");
+        let camera = test.camera;
+        let mist = Mist {
+            dry_per_m: 2e-4,
+            ..default()
+        };
+        test.world().get_mut::<HazeSettings>(camera).expect("settings").mist = Some(mist);
+        test.frames(6, FRAME);
+        assert!(test.recorded(PassName::Haze) > 0);
+        let obscured = read(&mut test, &mask)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize];
+        let extinction = mist_extinction_per_m(humidity, 2e-4, 0.3);
+        let expected = -(-extinction * 200.0).exp_m1();
+        assert!(
+            (obscured - expected).abs() < 2e-3,
+            "{humidity}: {obscured}, not {expected}"
+        );
+        assert!(obscured > before);
+        before = obscured;
+    }
+    assert!(before > 0.5, "fog: {before}");
+}
+
+#[test]
+fn an_area_has_a_fog_of_its_own_that_comes_in_over_its_soft_edge() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = hazy();
+    world::block(
+        test.world(),
+        "wall",
+        Vec3::new(-200.0, -10.0, -61.0),
+        Vec3::new(200.0, 80.0, -60.0),
+        [0.0; 3],
+    );
+    test.world().spawn(Weather::rain(0.0));
+    let fog = ArtistFog {
+        density_per_m: 0.01,
+        colour: Some(LinearRgba::rgb(0.2, 0.5, 1.0)),
+        ..default()
+    };
+    let area = test
+        .world()
+        .spawn((
+            RainArea(AreaSettings {
+                centre_m: bevy::math::DVec2::new(100.0, 0.0),
+                shape: AreaShape::Circle { radius_m: 50.0 },
+                rain: AreaRain::Scale(1.0),
+                transition_m: 40.0,
+                ..default()
+            }),
+            AreaFog(fog),
+        ))
+        .id();
+    let mask = with_mask(&mut test);
+    let at = |test: &mut TestApp, x: f32| {
+        test.look(Vec3::new(x, 12.0, 0.0), Vec3::new(x, 12.0, -10.0));
+        test.frames(4, FRAME);
+        read(test, &mask)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize]
+    };
+    let inside = -(-0.01_f64 * 60.0).exp_m1();
+    assert!(at(&mut test, 0.0) < 1e-3, "outside");
+    assert!((at(&mut test, 50.0) - 0.5 * inside).abs() < 2e-3, "on the outline");
+    assert!((at(&mut test, 100.0) - inside).abs() < 2e-3, "inside");
+    let picture = test.picture();
+    let [r, _, b] = picture.get_pixel(SIZE[0] / 2, SIZE[1] / 2).0.map(i32::from);
+    assert!(b > r + 20, "its colour: {r} {b}");
+    // One that is refused does not count.
+    test.world().get_mut::<AreaFog>(area).expect("a fog").0.density_per_m = f32::NAN;
+    assert!(at(&mut test, 100.0) < 1e-3);
+}
+
+/// A cube map of one colour.
+fn surroundings(test: &mut TestApp, colour: [bool; 3]) -> Handle<Image> {
+    // Half floats: one and zero.
+    let channel = |lit: bool| if lit { 0x3c00_u16 } else { 0 }.to_le_bytes();
+    let [r, g, b] = colour.map(channel);
+    let texel = [r, g, b, channel(true)].concat();
+    let mut image = Image::new(
+        Extent3d {
+            width: 4,
+            height: 4,
+            depth_or_array_layers: 6,
+        },
+        TextureDimension::D2,
+        texel.repeat(16 * 6),
+        TextureFormat::Rgba16Float,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::Cube),
+        ..default()
+    });
+    test.world().resource_mut::<Assets<Image>>().add(image)
+}
+
+#[test]
+fn the_open_sky_lights_far_rain_where_it_is_given_and_the_cameras_surroundings_do_otherwise() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = hazy();
+    test.world().spawn(Weather::rain(60.0));
+    let [red, blue] = [[true, false, false], [false, false, true]].map(|c| surroundings(&mut test, c));
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(EnvironmentMapLight {
+        diffuse_map: red.clone(),
+        specular_map: red,
+        intensity: 800.0,
+        ..default()
+    });
+    // Nothing but air: what is seen above the horizon is haze.
+    test.look(Vec3::new(0.0, 12.0, 0.0), Vec3::new(0.0, 14.0, -10.0));
+    test.frames(10, FRAME);
+    let seen = |test: &mut TestApp| {
+        let picture = test.picture();
+        picture.get_pixel(SIZE[0] / 2, SIZE[1] / 2).0.map(i32::from)
+    };
+    let [r, _, b] = seen(&mut test);
+    assert!(r > b + 60, "surroundings alone: {r} red, {b} blue");
+    test.world().entity_mut(camera).insert(HazeSky {
+        specular_map: blue,
+        intensity: 800.0,
+    });
+    test.frames(6, FRAME);
+    let [r, _, b] = seen(&mut test);
+    assert!(b > r + 60, "under a sky: {r} red, {b} blue");
 }

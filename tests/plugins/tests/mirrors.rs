@@ -224,3 +224,64 @@ fn at_most_four_mirrors_are_drawn_and_none_where_nobody_asks() {
     test.frames(3, FRAME);
     assert_eq!(test.recorded(PassName::Reflection), 0);
 }
+
+#[test]
+fn a_mirror_shows_the_haze_before_what_it_mirrors() {
+    if !gpu::available() {
+        return;
+    }
+    // A column far behind the plate, mirrored at its front edge, in a fog that hides half of it.
+    let picture = |mirrored: bool, fog: Option<ArtistFog>| {
+        let mut test = ponds();
+        let camera = test.camera;
+        test.world().insert_resource(GlobalAmbientLight {
+            brightness: 0.0,
+            ..default()
+        });
+        let world = test.world();
+        let suns: Vec<Entity> = world
+            .query_filtered::<Entity, With<DirectionalLight>>()
+            .iter(world)
+            .collect();
+        for sun in suns {
+            world.despawn(sun);
+        }
+        world.entity_mut(camera).insert(HazeSettings {
+            enabled: fog.is_some(),
+            artist: fog,
+            ..default()
+        });
+        if mirrored {
+            test.world()
+                .entity_mut(camera)
+                .insert(PlanarReflection { height_m: Some(0.0) });
+        }
+        test.frames(4, FRAME);
+        test.picture()
+    };
+    let red = |picture: &RgbImage| {
+        // Where the column's image lies: the lower half, about the middle.
+        let mut sum = 0.0;
+        for x in SIZE[0] * 2 / 5..SIZE[0] * 3 / 5 {
+            for y in SIZE[1] / 2..SIZE[1] * 4 / 5 {
+                let [r, _, b] = picture.get_pixel(x, y).0;
+                sum += f64::from(r.saturating_sub(b));
+            }
+        }
+        sum
+    };
+    let fog = |density_per_m| {
+        Some(ArtistFog {
+            density_per_m,
+            gain: 0.0,
+            colour: Some(LinearRgba::BLACK),
+            ..default()
+        })
+    };
+    let clear = red(&picture(true, None)) - red(&picture(false, None));
+    let hazy = red(&picture(true, fog(0.3))) - red(&picture(false, fog(0.3)));
+    // The eye is 2.6 m before the water, the column 2.2 m behind: with the fog on the second way, too, e^(−0.3·4.8).
+    println!("{clear} {hazy}");
+    assert!(clear > 500.0, "the column is mirrored: {clear}");
+    assert!(hazy < 0.62 * clear && hazy > 0.02 * clear, "{hazy} of {clear}");
+}

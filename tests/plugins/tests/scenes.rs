@@ -180,3 +180,26 @@ pub fn broken_channels(test: &mut TestApp, camera: Entity) -> usize {
     let halves = data.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
     halves.filter(|h| h & 0x7c00 == 0x7c00).count()
 }
+
+#[derive(Resource, Default)]
+struct Texels(Option<Vec<u8>>);
+
+/// The bytes of a texture, row after row, with what gaps there are between rows.
+pub fn read_texture(test: &mut TestApp, image: &Handle<Image>) -> Vec<u8> {
+    test.app.insert_resource(Texels::default());
+    let readback = test
+        .world()
+        .spawn(Readback::texture(image.clone()))
+        .observe(|done: On<ReadbackComplete>, mut out: ResMut<Texels>| out.0 = Some(done.data.clone()))
+        .id();
+    let mut data = None;
+    for _ in 0..50 {
+        test.frames(1, std::time::Duration::ZERO);
+        data = test.world().resource_mut::<Texels>().0.take();
+        if data.is_some() {
+            break;
+        }
+    }
+    test.world().despawn(readback);
+    data.expect("the texture comes back")
+}

@@ -170,3 +170,91 @@ fn splashes_leave_the_water_of_a_puddle_still() {
     }
     assert!(test.recorded(PassName::Waves) > 0);
 }
+
+/// Linear light that splashes add to a picture, from the sum over pixels that they brighten.
+fn added(with: &RgbImage, without: &RgbImage) -> f64 {
+    let linear = |v: u8| f64::from(Srgba::gamma_function(f32::from(v) / 255.0));
+    let more = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| (linear(a.0[1]) - linear(b.0[1])).max(0.0);
+    with.pixels().zip(without.pixels()).map(more).sum()
+}
+
+#[test]
+fn at_night_splashes_show_under_a_street_lamp_and_hardly_away_from_it() {
+    if !gpu::available() {
+        return;
+    }
+    // The lamp is low, before the eye, and lights no ground: what is seen of it is on splashes.
+    let light = |lumens: f32, x: f32| -> [f64; 2] {
+        let mut pictures = Vec::new();
+        let mut moments = [0.0, 0.0];
+        for splashes in [true, false] {
+            let mut test = scene(50.0, splashes);
+            test.world().insert_resource(GlobalAmbientLight {
+                brightness: 0.0,
+                ..default()
+            });
+            let suns: Vec<Entity> = test
+                .world()
+                .query_filtered::<Entity, With<DirectionalLight>>()
+                .iter(test.world())
+                .collect();
+            for sun in suns {
+                test.world().despawn(sun);
+            }
+            test.world().insert_resource(ClearColor(Color::BLACK));
+            test.world().spawn((
+                PointLight {
+                    intensity: lumens,
+                    range: 8.0,
+                    ..default()
+                },
+                Transform::from_xyz(0.0, 1.5, 8.0),
+            ));
+            test.look(Vec3::new(x, 0.6, 12.0), Vec3::new(x, 0.0, 10.0));
+            test.frames(12, FRAME);
+            let first = test.picture();
+            test.frames(7, FRAME);
+            pictures.push([first, test.picture()]);
+        }
+        for (i, moment) in moments.iter_mut().enumerate() {
+            *moment = added(&pictures[0][i], &pictures[1][i]);
+        }
+        moments
+    };
+    let sum = |moments: [f64; 2]| moments[0] + moments[1];
+    let (under, away) = (sum(light(4e5, 0.0)), sum(light(4e5, 14.0)));
+    let dark = sum(light(0.0, 0.0));
+    assert!(
+        under > 1.0 && away < 0.02 * under,
+        "{under} under the lamp, {away} away from it"
+    );
+    assert!(dark < 0.02 * under, "{dark} with the lamp off");
+}
+
+#[test]
+fn the_report_counts_what_the_gpu_drew() {
+    if !gpu::available() {
+        return;
+    }
+    let counts = |intensity_mm_h: f64| {
+        let mut test = scene(intensity_mm_h, true);
+        test.world().resource_mut::<SplashSettings>().budget = Some(2_000);
+        test.look(Vec3::new(0.0, 1.0, 12.0), Vec3::new(0.0, 0.0, 20.0));
+        test.frames(12, FRAME);
+        test.reset();
+        test.frames(20, FRAME);
+        let report = test.world().resource::<RainReport>().snapshot();
+        report.splashes.into_iter().collect::<Vec<u32>>()
+    };
+    let heavy = counts(50.0);
+    // A frame's count may come with the next.
+    assert!((19..=21).contains(&heavy.len()), "{heavy:?}");
+    assert!(
+        heavy.iter().all(|count| (200..=2 * 2_000 + 1024).contains(count)),
+        "{heavy:?}"
+    );
+    let drizzle = counts(1.0);
+    let sum = |counts: &[u32]| counts.iter().sum::<u32>();
+    assert!(sum(&drizzle) > 0 && 3 * sum(&drizzle) < sum(&heavy), "{drizzle:?}");
+    assert!(counts(0.0).is_empty());
+}

@@ -210,3 +210,42 @@ pub fn thrown(key: [u32; 3], index: u32, count: u32) -> Thrown {
         around: unit(spin) + (f64::from(index) + unit(b.rotate_left(13))) / f64::from(count),
     }
 }
+
+/// A drop that a step throws, by its description.
+#[derive(Debug, Clone, Copy)]
+pub struct FromStep {
+    /// Diameter, mm.
+    pub diameter_mm: f64,
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// From level, rad.
+    pub rise: f64,
+    /// About the sole, turns.
+    pub around: f64,
+}
+
+/// Drop `index` of the `count` drops of a step of `strength`.
+pub fn from_step(strength: f64, key: [u32; 3], index: u32, count: u32) -> FromStep {
+    let last = (u64::from(key[2]) + u64::from(index)) % (1 << 32);
+    let [a, b, c] = pcg3d([key[0] ^ pcg(index), key[1], last as u32]);
+    FromStep {
+        diameter_mm: 1.5 + 5.0 * unit(a).powi(2),
+        speed_m_s: strength.sqrt() * (0.8 + 1.7 * unit(b)),
+        rise: (25.0 + 40.0 * unit(c)).to_radians(),
+        around: (f64::from(index) + unit(b.rotate_left(13))) / f64::from(count),
+    }
+}
+
+/// Radius and height, m, and opacity of the sheet of a step of `strength` after `age_s`.
+pub fn sheet_of_step(strength: f64, age_s: f64) -> [f64; 3] {
+    let share = age_s / 0.12;
+    if !(0.0..1.0).contains(&share) || strength <= 0.0 {
+        return [0.0; 3];
+    }
+    let rest = 1.0 - share;
+    [
+        0.05 + 0.15 * strength.sqrt() * share,
+        0.16 * strength.sqrt() * share * rest,
+        if share < 0.5 { 0.25 } else { 0.5 * rest },
+    ]
+}

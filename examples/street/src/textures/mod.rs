@@ -1,5 +1,6 @@
 //! The street's own textures: a formula per surface gives colour, height and roughness; the maps follow from them.
 
+pub mod fields;
 pub mod foliage;
 pub mod ground;
 pub mod paint;

@@ -195,3 +195,41 @@ fn the_court_carries_its_puddles_in_its_vertex_colours() {
     let (low, high) = depth.iter().fold((255, 0), |(l, h), &v| (l.min(v), h.max(v)));
     assert_eq!((low, high), (0, 255), "the relief spans the whole range");
 }
+
+#[test]
+fn the_plain_is_open_around_its_road_and_reaches_the_horizon() {
+    let bytes = street::plain::glb(street::DEFAULT_SEED).expect("no file involved");
+    assert!(bytes.len() < 16 << 20, "plain.glb has {} bytes", bytes.len());
+    assert!(bytes == street::plain::glb(street::DEFAULT_SEED).expect("no file involved"));
+    let (document, buffers, _) = gltf::import_slice(&bytes).expect("valid glTF");
+    let mut far = 0.0_f32;
+    for name in ["road", "meadow", "furrows"] {
+        let node = document.nodes().find(|n| n.name() == Some(name)).expect(name);
+        let primitive = node.mesh().and_then(|m| m.primitives().next()).expect("it has a mesh");
+        let reader = primitive.reader(|buffer| Some(&buffers[buffer.index()]));
+        let positions: Vec<[f32; 3]> = reader.read_positions().expect("positions").collect();
+        for [x, y, z] in &positions {
+            assert!((y - street::plain::height(*x, *z)).abs() < 1e-3, "{name} at {x}, {z}");
+            assert!(name != "road" || x.abs() <= street::plain::ROAD_HALF_M);
+            far = far.max(x.hypot(*z));
+        }
+        let corner = |i: u32| glam::Vec3::from(positions[i as usize]);
+        let indices: Vec<u32> = reader.read_indices().expect("indices").into_u32().collect();
+        for t in indices.chunks_exact(3) {
+            let up = (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).y;
+            assert!(up > 0.0, "{name} faces down at {}", corner(t[0]));
+        }
+    }
+    assert!(far > 4500.0, "its corners are {far} m away");
+    let trees: Vec<_> = document
+        .nodes()
+        .filter(|n| n.name().is_some_and(|n| n.starts_with("hedge-tree-")))
+        .collect();
+    assert!(trees.len() > 60, "{} trees", trees.len());
+    for tree in trees {
+        let [x, y, z] = tree.transform().decomposed().0;
+        assert!(x.abs() > 8.0, "a tree on the verge at {x}, {z}");
+        let into = street::plain::height(x, z) - y;
+        assert!(into > 0.3 && into < 1.2, "a tree at {x}, {z} stands {into} m deep");
+    }
+}

@@ -42,6 +42,8 @@ pub struct FarFit {
     pub bearings_rad: [f64; 2],
     /// Extent across, to the left and right of the anchor as seen from the eye (the first is at most 0). Units: m.
     pub across_m: [f64; 2],
+    /// Extent before the anchor, towards the eye: of a soft edge and of outlines that are not convex. Units: m. At least 0.
+    pub front_m: f64,
     /// Depth from the anchor to the furthest point in sight, along `towards`. Units: m.
     pub depth_m: f64,
     /// How much is in sight.
@@ -139,6 +141,7 @@ pub fn far_fit(view: &FarView, centre_m: DVec2, radii_m: DVec2, heading_rad: f64
         distance_m: distance,
         bearings_rad: bearings,
         across_m: [least.min(0.0), most.max(0.0)],
+        front_m: 0.0,
         depth_m: depth,
         seen,
     })

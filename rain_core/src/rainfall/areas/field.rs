@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::density::DensityMap;
 use super::motion::AreaFade;
 use super::settings::{AreaRain, AreaSettings};
 use super::shape::Outline;
@@ -47,6 +48,8 @@ pub struct PlacedArea {
     pub transition_m: f64,
     /// How much of it is there. Units: none. Domain: (0, 1].
     pub strength: f64,
+    /// What is painted in it.
+    pub density: Option<DensityMap>,
     pub(super) outline: Outline,
 }
 
@@ -67,12 +70,36 @@ impl PlacedArea {
     fn weights_within(&self, place_m: DVec2, radius_m: f64) -> [f64; 2] {
         let enough = 0.5 * self.transition_m + radius_m;
         let distance = self.outline.distance(place_m - self.centre_m, enough);
-        [distance + radius_m, distance - radius_m]
-            .map(|distance| self.strength * border_weight(distance, self.transition_m))
+        let painted = self.painted_within(place_m, radius_m);
+        let borders = [distance + radius_m, distance - radius_m];
+        [0, 1].map(|i| self.strength * border_weight(borders[i], self.transition_m) * painted[i])
+    }
+
+    /// Least and greatest painted share within `radius_m` of a point, infinite for everywhere.
+    fn painted_within(&self, place_m: DVec2, radius_m: f64) -> [f64; 2] {
+        match &self.density {
+            None => [1.0; 2],
+            Some(map) if radius_m == f64::INFINITY => map.extremes(),
+            Some(map) => map.within(place_m - self.centre_m, radius_m),
+        }
     }
 
     /// ∇w. Units: 1/m.
     fn slope_at(&self, place_m: DVec2) -> DVec2 {
+        let border = self.border_slope_at(place_m);
+        match &self.density {
+            None => border,
+            Some(map) => {
+                let local = place_m - self.centre_m;
+                let distance = self.outline.distance(local, 0.5 * self.transition_m);
+                let weight = self.strength * border_weight(distance, self.transition_m);
+                border * map.at(local) + map.slope_at(local) * weight
+            }
+        }
+    }
+
+    /// ∇w of the border alone. Units: 1/m.
+    fn border_slope_at(&self, place_m: DVec2) -> DVec2 {
         if self.transition_m == 0.0 {
             return DVec2::ZERO;
         }
@@ -133,6 +160,7 @@ impl AreaField {
                 rain: settings.rain,
                 transition_m: settings.transition_m,
                 strength,
+                density: settings.density.clone(),
                 outline: Outline::of(&settings.shape),
             });
         }
@@ -197,7 +225,11 @@ impl AreaField {
             self.combined(weather_mm_h, |area| {
                 let [least, most] = if radius == f64::INFINITY {
                     let whole = matches!(area.outline, Outline::Unbounded);
-                    [if whole { area.strength } else { 0.0 }, area.strength]
+                    let painted = area.painted_within(place_m, radius);
+                    [
+                        if whole { area.strength * painted[0] } else { 0.0 },
+                        area.strength * painted[1],
+                    ]
                 } else {
                     area.weights_within(place_m, radius)
                 };

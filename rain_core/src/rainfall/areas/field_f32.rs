@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::density::{density_at_f32, density_rows};
 use super::ellipse::ellipse_distance_f32;
 use super::field::{AreaField, PlacedArea, border_weight_f32};
 use super::polygon::polygon_distance_f32;
@@ -10,10 +11,13 @@ use super::shape::{MAX_CORNERS, Outline};
 use crate::error::clamped_f32;
 use crate::rainfall::spectrum::MAX_INTENSITY_MM_H;
 
-/// Most rows: 4 KiB.
-pub const MAX_PACKED_ROWS: usize = 256;
+/// Most rows: 32 KiB.
+pub const MAX_PACKED_ROWS: usize = 2048;
 /// Most areas: three rows each, and one for two corners of a polygon.
 pub const MAX_PACKED_AREAS: usize = MAX_PACKED_ROWS / 3;
+
+/// What a kind of outline is more where a density is painted.
+const PAINTED: f64 = 4.0;
 
 /// Rates held in [0, 500] mm/h.
 const MOST: f32 = MAX_INTENSITY_MM_H as f32;
@@ -22,7 +26,8 @@ const MOST: f32 = MAX_INTENSITY_MM_H as f32;
 ///
 /// Each area has three rows: centre (x, z) and the first axis (cosine, sine); radii, transition, kind of outline (0
 /// unbounded, 1 ellipse, 2 polygon); kind of rain (0 rate, 1 of the weather, 2 scale), its value, strength, corners. The
-/// corners of a polygon follow, two a row.
+/// corners of a polygon follow, two a row. The kind of outline is 4 more where a density is painted, whose rows come last: half
+/// its size and its cells; then twelve values a row, three a number.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AreaFieldF32 {
     /// Units: m and mm/h. Places are relative to the origin that was given.
@@ -50,7 +55,8 @@ impl AreaField {
                 Outline::Polygon(corners) => corners.as_slice(),
                 _ => &[],
             };
-            if into.rows.len() + 3 + corners.len().div_ceil(2) > MAX_PACKED_ROWS {
+            let painted = area.density.as_ref().map_or(0, |map| density_rows(map.values().len()));
+            if into.rows.len() + 3 + corners.len().div_ceil(2) + painted > MAX_PACKED_ROWS {
                 return false;
             }
             into.rows.extend(head(area, origin_m, corners.len()));
@@ -59,6 +65,7 @@ impl AreaField {
                 into.rows
                     .push([pair[0].x, pair[0].y, second.x, second.y].map(|v| v as f32));
             }
+            into.rows.extend(area.density.iter().flat_map(|map| map.rows()));
             into.areas += 1;
         }
         true
@@ -73,6 +80,7 @@ fn head(area: &PlacedArea, origin_m: DVec2, corners: usize) -> [[f32; 4]; 3] {
         Outline::Ellipse(radii, axis) => (*radii, *axis, 1.0),
         Outline::Polygon(_) => (DVec2::ONE, DVec2::X, 2.0),
     };
+    let painted = if area.density.is_some() { PAINTED } else { 0.0 };
     let (rain, value) = match area.rain {
         AreaRain::Rate(rate) => (0.0, rate),
         AreaRain::OfWeather(share) => (1.0, share),
@@ -80,7 +88,7 @@ fn head(area: &PlacedArea, origin_m: DVec2, corners: usize) -> [[f32; 4]; 3] {
     };
     [
         [centre.x, centre.y, axis.x, axis.y],
-        [radii.x, radii.y, area.transition_m, kind],
+        [radii.x, radii.y, area.transition_m, kind + painted],
         [rain, value, area.strength, corners as f64],
     ]
     .map(|row| row.map(|v| v as f32))
@@ -111,8 +119,18 @@ impl AreaFieldF32 {
             let corners = (rain[3] as usize).min(MAX_CORNERS);
             let rows = self.rows.get(at + 3..at + 3 + corners.div_ceil(2)).unwrap_or_default();
             at += 3 + corners.div_ceil(2);
+            let kind = outline[3] as u32;
+            let painted = if kind >= PAINTED as u32 {
+                let sides = self.rows.get(at).map_or([0.0; 2], |head| [head[2], head[3]]);
+                let count = density_rows((sides[0] as usize).saturating_mul(sides[1] as usize));
+                let rows = self.rows.get(at..at.saturating_add(count)).unwrap_or_default();
+                at = at.saturating_add(count);
+                Some(rows)
+            } else {
+                None
+            };
             let (x, z) = (place_m[0] - place[0], place_m[1] - place[1]);
-            let distance = match outline[3] as u32 {
+            let distance = match kind % PAINTED as u32 {
                 0 => f32::MIN,
                 1 => ellipse_distance_f32(
                     [place[2] * x + place[3] * z, place[2] * z - place[3] * x],
@@ -127,7 +145,8 @@ impl AreaFieldF32 {
                     polygon_distance_f32([x, z], &points[..corners])
                 }
             };
-            let weight = rain[2] * border_weight_f32(distance, outline[2]);
+            let painted = painted.map_or(1.0, |rows| density_at_f32(rows, [x, z]));
+            let weight = rain[2] * border_weight_f32(distance, outline[2]) * painted;
             match rain[0] as u32 {
                 0 => rate = f32::max(rate, weight * rain[1]),
                 1 => rate = f32::max(rate, weight * rain[1] * weather),

@@ -8,6 +8,7 @@
 //! | `ellipse.rs` | nearest point, signed distance, tangents, ray |
 //! | `polygon.rs` | simple polygons: checks and signed distance |
 //! | `shape.rs` | [`AreaShape`], and how far a point is from its border |
+//! | `density.rs` | [`DensityMap`]: painted shares of an area's rain |
 //! | `motion.rs` | [`AreaMotion`] and [`AreaFade`]: closed forms of the time |
 //! | `settings.rs` | [`AreaSettings`]: one area as it is authored |
 //! | `field.rs` | [`AreaField`]: all areas at one time, and the rate at a point |
@@ -15,9 +16,11 @@
 //! | `field_f32.rs` | the same for what runs per drop or texel, and its packed form |
 //! | `map.rs` | the rain from above, for plots |
 //! | `far.rs` | an area seen from outside: where its container stands and how large it is |
+//! | `in_sight.rs` | the same for every outline, soft edge included, and how near the rain is |
 //!
 //! # How areas combine
-//! At a point with weights w (1 well inside, 0 well outside, half at the border) and the weather's rate W:
+//! At a point with weights w (1 well inside, 0 well outside, half at the border; times what is painted there) and the
+//! weather's rate W:
 //!
 //! ```text
 //! rate = max(outside·W, max over showers of w·R) × product over scales of (1 − w(1 − f))
@@ -28,10 +31,12 @@
 //! hole in any rain. The rule knows no order, is continuous in place and time, and never exceeds the largest rate that was
 //! authored.
 
+mod density;
 mod ellipse;
 mod far;
 mod field;
 mod field_f32;
+mod in_sight;
 mod integral;
 mod map;
 mod motion;
@@ -39,6 +44,7 @@ mod polygon;
 mod settings;
 mod shape;
 
+pub use density::{DensityMap, MAX_DENSITY_SIDE};
 pub use ellipse::{ellipse_distance, ellipse_distance_f32, ellipse_nearest, ellipse_ray, ellipse_tangents};
 pub use far::{FarFit, FarView, Seen, far_fit, near_share};
 pub use field::{AreaField, PlacedArea, border_weight, border_weight_f32};

@@ -6,6 +6,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::density::DensityMap;
 use super::field::AreaField;
 use super::motion::{AreaFade, AreaMotion};
 use super::shape::{AreaShape, MAX_CORNERS};
@@ -73,6 +74,9 @@ pub struct AreaSettings {
     /// Width of the soft edge, half of it on each side of the outline. Units: m. Domain: [0, 1e5]. Default: 20; 0 is a
     /// sharp edge. Showers in nature have 200 to 2000.
     pub transition_m: f64,
+    /// How much of its rain falls where, painted: shares that multiply its weight and go along with its centre. Default: all of
+    /// it everywhere.
+    pub density: Option<DensityMap>,
     /// How it moves. Default: it stays.
     pub motion: AreaMotion,
     /// When it is there. Default: always.
@@ -86,6 +90,7 @@ impl Default for AreaSettings {
             shape: AreaShape::default(),
             rain: AreaRain::default(),
             transition_m: 20.0,
+            density: None,
             motion: AreaMotion::default(),
             fade: AreaFade::default(),
         }
@@ -126,15 +131,19 @@ impl AreaSettings {
     #[must_use]
     pub fn effective_area_m2(&self) -> f64 {
         let half = 0.5 * self.transition_m;
-        let closed = match &self.shape {
-            AreaShape::Unbounded => return f64::INFINITY,
-            AreaShape::Circle { radius_m } => half <= *radius_m,
-            AreaShape::Ellipse { radii_m, .. } => {
-                let (a, b) = (radii_m.max_element(), radii_m.min_element());
-                half * a <= b * b
-            }
-            AreaShape::Polygon { .. } => half == 0.0,
-        };
+        if matches!(self.shape, AreaShape::Unbounded) {
+            return f64::INFINITY;
+        }
+        let closed = self.density.is_none()
+            && match &self.shape {
+                AreaShape::Unbounded => false,
+                AreaShape::Circle { radius_m } => half <= *radius_m,
+                AreaShape::Ellipse { radii_m, .. } => {
+                    let (a, b) = (radii_m.max_element(), radii_m.min_element());
+                    half * a <= b * b
+                }
+                AreaShape::Polygon { .. } => half == 0.0,
+            };
         if closed {
             return self.shape.area_m2() + PI * self.transition_m * self.transition_m / 20.0;
         }

@@ -1,7 +1,9 @@
 //! Rain areas against a search along their outlines; the rule by which they combine; containers and their laws.
 
 mod containers;
+mod density;
 mod far;
+mod far_rain;
 mod rates;
 
 use glam::DVec2;

@@ -1,9 +1,11 @@
 //! Fresnel reflection, refraction in a drop, streaks, extinction.
 
+mod cloud;
 mod drop;
 mod formulas;
 mod fresnel;
 mod haze;
+mod rainbow;
 mod sharing;
 mod sphere;
 mod streak;

@@ -2,14 +2,15 @@
 
 use glam::{DVec2, DVec3, IVec2, Mat4, Vec2, Vec3, Vec4};
 use rain_core::hash::{pcg3d, unit_f32};
-use rain_core::rainfall::{Distribution, Spectrum, terminal_velocity_f32};
+use rain_core::rainfall::{Distribution, Lamp, Spectrum, terminal_velocity_f32};
 use rain_core::splash::{
     Impact, SPLASH_CELL_M, SPLASH_SLOTS, Splash, SplashAnchor, SplashExtent, SplashField, SplashMark, SplashShares,
 };
 use rain_render::cover::CoverPlacement;
+use rain_render::glass::Pane;
 use rain_render::gpu_types::{LevelMapParams, SplashDraw, SplashPart};
 use rain_render::rainfall::Lighting;
-use rain_render::splash::{SplashGpu, SplashInput, SplashTextures, SplashViewGpu, encode_splash_make};
+use rain_render::splash::{SplashGpu, SplashInput, SplashTextures, SplashViewGpu, StepSplash, encode_splash_make};
 
 use crate::cover_parity::depth_texture;
 use crate::device::Device;
@@ -42,6 +43,14 @@ pub struct Scene {
     pub near_reach_m: f32,
     pub contrast: f32,
     pub seed: u64,
+}
+
+/// What a view may have beside the rain.
+#[derive(Clone, Copy, Default)]
+pub struct Extra<'a> {
+    pub lamps: &'a [Lamp],
+    pub panes: &'a [Pane],
+    pub feet: &'a [StepSplash],
 }
 
 impl Default for Scene {
@@ -179,6 +188,17 @@ impl Scene {
 
     /// What the GPU makes of it, and how many parts there would have been.
     pub fn parts(&self, gpu: &Device, pipelines: &SplashGpu, capacity: u32) -> (Vec<SplashPart>, u32) {
+        self.parts_with(gpu, pipelines, capacity, Extra::default())
+    }
+
+    /// The same with lamps, panes and steps.
+    pub fn parts_with(
+        &self,
+        gpu: &Device,
+        pipelines: &SplashGpu,
+        capacity: u32,
+        extra: Extra,
+    ) -> (Vec<SplashPart>, u32) {
         let field = self.field();
         let (sin, cos) = 0.6_f32.sin_cos();
         let eye = self.eye_world();
@@ -224,6 +244,9 @@ impl Scene {
                 sun_direction: Vec3::Y,
                 sun: Vec3::ZERO,
             },
+            lamps: extra.lamps,
+            panes: extra.panes,
+            feet: extra.feet,
             cover: self.placement().params(eye),
             levels,
         };

@@ -1,7 +1,9 @@
 //! Fresnel reflection, refraction in a drop, streaks, extinction.
 
+pub mod cloud;
 pub mod drop;
 pub mod haze;
+pub mod rainbow;
 pub mod sphere;
 pub mod streak;
 
