@@ -64,6 +64,8 @@ fn night(lightning: bool, towards: Vec3) -> TestApp {
         Vec3::new(0.0, 1.7, 8.0),
         Vec3::new(0.0, 1.7, 8.0) + flat + 0.25 * Vec3::Y,
     );
+    // The first update only starts the clock.
+    test.frames(1, FRAME);
     test
 }
 
