@@ -466,12 +466,8 @@ fn humid_air_is_misty_without_rain() {
             Vec3::new(80.0, 80.0, -200.0),
             [0.1; 3],
         );
-        let conditions = WeatherConditions {
-            relative_humidity: humidity,
-            ..WeatherConditions::default()
-        };
         test.world().spawn(Weather {
-            conditions,
+            relative_humidity: humidity,
             ..default()
         });
         let mask = with_mask(&mut test);
