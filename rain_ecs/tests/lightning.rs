@@ -2,7 +2,7 @@
 
 use bevy_app::{App, Update};
 use bevy_ecs::prelude::*;
-use bevy_math::{DVec3, Vec3};
+use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 use rain_core::lightning::{Flash, FlashKind, for_each_flash, sound_speed_m_s};
 use rain_ecs::prelude::*;
@@ -73,7 +73,11 @@ fn flashes_are_told_in_their_tick_and_thunder_when_it_arrives() {
         .map(|(_, m)| m.flash)
         .filter(|flash| flash.time_s < 119.9)
         .collect();
-    assert_eq!(told, expected);
+    // By second and rank, not by time.
+    expected.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    let mut in_order = told;
+    in_order.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    assert_eq!(in_order, expected);
     for (now, message) in &collected.flashes {
         // By the first frame after the tick that has it.
         let late = now - message.flash.time_s;
@@ -103,7 +107,9 @@ fn flashes_are_told_in_their_tick_and_thunder_when_it_arrives() {
         .filter(|(_, m)| m.flash.kind == FlashKind::ToGround);
     for (_, heard) in struck {
         let away = heard.flash.place_m.distance(place.as_dvec3());
-        assert!((heard.thunder.delay_s - away / 340.0).abs() < 4.0, "{away} {heard:?}");
+        // A part in the cloud may be nearer, the low part of a far channel is not heard.
+        let late = heard.thunder.delay_s - away / 340.0;
+        assert!(late < 1.5 && (away > 4000.0 || late > -4.0), "{away} {heard:?}");
     }
 }
 
@@ -224,5 +230,5 @@ fn who_comes_nearer_hears_it_sooner_and_a_leap_tells_the_last_flashes() {
     let told = &collected.flashes[before..];
     // 256 ticks of 390 s: ten seconds of each.
     assert!(told.len() > 100 && told.len() < 1000, "{}", told.len());
-    assert!(DVec3::from(told[0].1.flash.place_m).is_finite());
+    assert!(told[0].1.flash.place_m.is_finite());
 }

@@ -40,7 +40,7 @@ fn rain_is_heard_where_it_lands_by_what_it_lands_on() {
     assert!(street.exposure == 1.0 && street.shelter_db == 0.0 && street.rain_mm_h == 25.0);
     assert!(under.exposure < 0.05 && under.shelter_db > 55.0, "{under:?}");
     // A roof keeps the nearest drops off: the ground is quieter.
-    assert!(under.on(SurfaceClass::Asphalt) < street.on(SurfaceClass::Asphalt) - 2.0);
+    assert!(under.on(SurfaceClass::Asphalt) < street.on(SurfaceClass::Asphalt) - 1.0);
     // Ten times the rain: some 12 dB more; none: silence.
     app.world_mut().entity_mut(weather).insert(Weather::rain(2.5));
     run(&mut app, 2);
@@ -57,7 +57,7 @@ fn thunder_is_as_loud_as_it_arrives() {
     let mut app = app(RainClock::default());
     app.insert_resource(RainSeed(21));
     let settings = LightningSettings {
-        flashes_per_km2_min: 0.1,
+        flashes_per_km2_min: 0.04,
         radius_m: 4000.0,
         ..LightningSettings::default()
     };

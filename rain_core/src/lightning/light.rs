@@ -2,7 +2,7 @@
 //!
 //! # Accuracy
 //! Every piece of the channel sends its light evenly in all directions, as much as its current times a factor; measured
-//! pulses scatter by a factor of two about that. Half of the light within the cloud leaves its base, from a soft patch.
+//! pulses scatter by a factor of two about that. The light within the cloud leaves its base from a soft patch.
 
 use core::f64::consts::PI;
 
@@ -16,8 +16,14 @@ use super::flash::{Flash, FlashKind};
 pub const LUMENS_PER_M_A: f64 = 1e6 * 100.0 / 30e3;
 /// Light of branches over that of the channel, by length. By eye.
 const BRANCH_SHARE: f64 = 0.3;
-/// Share of the light within the cloud that leaves its base.
-const OUT_OF_BASE: f64 = 0.5;
+/// Share of the light within the cloud that leaves its base: half, of strokes to the ground a fifth of that, since their light
+/// fades on its way up (Jordan & Uman 1983).
+const fn out_of_base(kind: FlashKind) -> f64 {
+    match kind {
+        FlashKind::ToGround => 0.1,
+        FlashKind::InCloud => 0.5,
+    }
+}
 /// Deviation of the patch of the base that glows about the channel. Units: m. By eye: clouds light up over a few km.
 pub const GLOW_SPREAD_M: f64 = 1500.0;
 
@@ -78,7 +84,7 @@ impl FlashLight {
         let mut flux = 0.0;
         for p in channel.hidden().windows(2) {
             let middle = 0.5 * (p[0] + p[1]);
-            let lumens = OUT_OF_BASE * LUMENS_PER_M_A * p[0].distance(p[1]);
+            let lumens = out_of_base(flash.kind) * LUMENS_PER_M_A * p[0].distance(p[1]);
             let height = base * base + GLOW_SPREAD_M * GLOW_SPREAD_M;
             let square = (middle - place).with_y(0.0).length_squared() + height;
             light.glow_lux_a += lumens / PI * height / (square * square);

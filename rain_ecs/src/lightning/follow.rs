@@ -63,6 +63,12 @@ impl ActiveLightning {
         &self.flashes
     }
 
+    /// Whether a weather with [`Lightning`] is in force.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        self.of.is_some()
+    }
+
     /// The settings in force.
     #[must_use]
     pub fn settings(&self) -> LightningSettings {

@@ -19,7 +19,7 @@ use crate::render_adapter::LightningMaterial;
 use crate::surface::{KeepDry, MovesInRain};
 
 /// Colour of a channel of some 25 000 K, of luminance 1. Linear.
-const COLOUR: Vec3 = Vec3::new(0.86, 0.98, 1.6);
+const COLOUR: Vec3 = Vec3::new(0.78, 0.96, 2.0);
 /// Shortest time that light is averaged over: an eye's and a camera's exposure. Units: s.
 const EXPOSURE_S: f32 = 1.0 / 60.0;
 /// Longest: of the frames that take longer, the last part. Units: s.
@@ -48,6 +48,8 @@ struct Slot {
     materials: [Handle<LightningMaterial>; 3],
     /// As drawn. Units: m.
     width_m: f32,
+    /// Channel and branches are drawn.
+    is_seen: bool,
 }
 
 /// A value of the app's that a flash adds to.
@@ -87,11 +89,11 @@ pub(super) struct Shown {
     good: LightningLook,
 }
 
-/// Whether a flash may be on, or the last frame showed one.
+/// Whether a flash may be on, the last frame showed one, or a storm has just begun.
 pub(super) fn something_flashes(clock: Res<RainClock>, sky: Res<ActiveLightning>, shown: Res<Shown>) -> bool {
     let now_s = frame_time(&clock);
     let on = |active: &ActiveFlash| active.flash.time_s <= now_s && active.flash.time_s + LONGEST_FLASH_S + 0.2 > now_s;
-    shown.lit || sky.flashes().iter().any(on)
+    shown.lit || (sky.is_on() && shown.slots.is_empty()) || sky.flashes().iter().any(on)
 }
 
 /// Time that the frame shows. Units: s.
@@ -144,8 +146,7 @@ pub(super) struct Lit<'w, 's> {
         ),
         With<LightningLight>,
     >,
-    parts:
-        Query<'w, 's, (&'static mut Mesh3d, &'static mut Transform, &'static mut Visibility), Without<LightningLight>>,
+    parts: Query<'w, 's, &'static mut Visibility, (With<MeshMaterial3d<LightningMaterial>>, Without<LightningLight>)>,
     meshes: Option<ResMut<'w, Assets<Mesh>>>,
     materials: Option<ResMut<'w, Assets<LightningMaterial>>>,
 }
@@ -174,11 +175,15 @@ pub(super) fn show_lightning(
     let window_s = time.delta_secs().clamp(EXPOSURE_S, LONGEST_EXPOSURE_S);
     let extinction = extinction_per_m(field.spectrum(), EXTINCTION_EFFICIENCY) as f32;
     let (mut direct, mut towards, mut ambient) = (0.0, Vec3::ZERO, 0.0);
-    let mut on = Vec::new();
+    let (mut on, mut going_on) = (Vec::new(), Vec::new());
     for active in sky.flashes() {
         let Some(eye) = eye(&views).filter(|_| look.enabled && look.gain > 0.0) else {
             break;
         };
+        let since_s = now_s - active.flash.time_s;
+        if (0.0..active.flash.duration_s() + 0.1).contains(&since_s) {
+            going_on.push(active.flash.id);
+        }
         let [all, first] = active.flash.mean_current_a(now_s - f64::from(window_s), now_s);
         if all <= 0.1 {
             continue;
@@ -198,9 +203,12 @@ pub(super) fn show_lightning(
         ambient += currents[0] * light.glow_lux_a as f32 * (SCATTERED + (1.0 - SCATTERED) * under);
         on.push((active, light, currents, eye));
     }
-    shown.lit = !on.is_empty();
+    shown.lit = !on.is_empty() || !going_on.is_empty();
+    if look.enabled && shown.slots.is_empty() {
+        warm_up(&mut commands, shown, &mut lit);
+    }
     light_scene(&mut commands, shown, &mut lit, direct, towards, ambient, look.shadows);
-    show_channels(&mut commands, shown, &mut lit, &on, extinction);
+    show_channels(&mut commands, shown, &mut lit, &on, &going_on, extinction);
 }
 
 /// Directional light, ambient light and sky.
@@ -270,19 +278,27 @@ fn show_channels(
     shown: &mut Shown,
     lit: &mut Lit,
     on: &[(&ActiveFlash, FlashLight, [f32; 2], Eye)],
+    going_on: &[u64],
     extinction: f32,
 ) {
     let (Some(meshes), Some(materials)) = (&mut lit.meshes, &mut lit.materials) else {
         return; // a server draws nothing
     };
     for slot in &mut shown.slots {
-        let over = |id: u64| on.iter().all(|(active, ..)| active.flash.id != id);
-        if slot.flash.is_some_and(over) {
+        let Some(id) = slot.flash else { continue };
+        let is_on = on.iter().any(|(active, ..)| active.flash.id == id);
+        // Between strokes it is dark, and kept.
+        if !is_on && !going_on.contains(&id) {
             slot.flash = None;
-            for part in slot.parts {
-                if let Ok((.., mut visible)) = lit.parts.get_mut(part) {
-                    visible.set_if_neq(Visibility::Hidden);
-                }
+        }
+        for (part, entity) in slot.parts.into_iter().enumerate() {
+            let is_shown = is_on && (part == 2 || slot.is_seen);
+            if let Ok(mut visible) = lit.parts.get_mut(entity) {
+                visible.set_if_neq(if is_shown {
+                    Visibility::Visible
+                } else {
+                    Visibility::Hidden
+                });
             }
         }
     }
@@ -296,14 +312,14 @@ fn show_channels(
                 .glow_mesh
                 .get_or_insert_with(|| meshes.add(shapes::glow()))
                 .clone();
+            let tubes = |paths: &[&[DVec3]], width_m: f32| shapes::tubes(paths.iter().copied(), origin, width_m);
+            let branches: Vec<&[DVec3]> = channel.branches().iter().map(Vec::as_slice).collect();
+            // Within the cloud there is nothing to be seen but the glow.
+            let is_seen = !channel.seen().is_empty();
             let all = [
-                meshes.add(shapes::tubes(std::iter::once(channel.seen()), origin, width_m)),
-                meshes.add(shapes::tubes(
-                    channel.branches().iter().map(Vec::as_slice),
-                    origin,
-                    0.6 * width_m,
-                )),
-                glow,
+                is_seen.then(|| meshes.add(tubes(&[channel.seen()], width_m))),
+                is_seen.then(|| meshes.add(tubes(&branches, 0.6 * width_m))),
+                Some(glow),
             ];
             let base = origin.y + active.flash.cloud_base_m;
             let places = [origin, origin, channel.glow_centre().with_y(base)].map(|at| at.as_vec3());
@@ -315,11 +331,13 @@ fn show_channels(
                 }
             };
             let slot = &mut shown.slots[index];
-            (slot.flash, slot.width_m) = (Some(active.flash.id), width_m);
+            (slot.flash, slot.width_m, slot.is_seen) = (Some(active.flash.id), width_m, is_seen);
             for ((part, mesh), place) in slot.parts.into_iter().zip(all).zip(places) {
-                commands
-                    .entity(part)
-                    .insert((Mesh3d(mesh), Transform::from_translation(place), Visibility::Visible));
+                let mut part = commands.entity(part);
+                match mesh {
+                    Some(mesh) => part.insert((Mesh3d(mesh), Transform::from_translation(place), Visibility::Visible)),
+                    None => part.insert(Visibility::Hidden),
+                };
             }
             index
         });
@@ -340,6 +358,22 @@ fn show_channels(
             }
         }
     }
+}
+
+/// Draws nothing that is seen until the first flash, so that it need not wait for its pipelines.
+fn warm_up(commands: &mut Commands, shown: &mut Shown, lit: &mut Lit) {
+    let (Some(meshes), Some(materials)) = (&mut lit.meshes, &mut lit.materials) else {
+        return;
+    };
+    let slot = new_slot(commands, materials);
+    let line = [DVec3::ZERO, DVec3::Y];
+    let mesh = meshes.add(shapes::tubes(std::iter::once(line.as_slice()), DVec3::ZERO, 0.0));
+    for part in slot.parts {
+        commands
+            .entity(part)
+            .insert((Mesh3d(mesh.clone()), Visibility::Visible));
+    }
+    shown.slots.push(slot);
 }
 
 fn new_slot(commands: &mut Commands, materials: &mut Assets<LightningMaterial>) -> Slot {
@@ -370,6 +404,7 @@ fn new_slot(commands: &mut Commands, materials: &mut Assets<LightningMaterial>) 
         parts,
         materials,
         width_m: WIDTH_M,
+        is_seen: false,
     }
 }
 

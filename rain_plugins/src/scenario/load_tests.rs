@@ -45,6 +45,8 @@ Scenario(
         wetness: 0.75,
         water_level: 0.25,
         hole_level: 0.5,
+        gusts: (intensity: 0.25, time_scale_s: 6),
+        lightning: (flashes_per_km2_min: 0.0625, centre_m: (100, -50), nearest_m: 700),
         levels: (keys: [(time_s: 0, wetness: 0), (time_s: 8, wetness: 1, water_level: 0.125)], period_s: 20),
     ),
     areas: (
@@ -125,6 +127,9 @@ fn a_full_scenario_is_read() {
         (WeatherMode::Artist, Transition::Linear)
     );
     assert_eq!((s.weather.wetness, s.weather.water_level), (Some(0.75), Some(0.25)));
+    let (gusts, lightning) = (s.weather.gusts.unwrap(), s.weather.lightning.unwrap());
+    assert_eq!((gusts.intensity, gusts.lateral, gusts.time_scale_s), (0.25, 0.75, 6.0));
+    assert_eq!((lightning.flashes_per_km2_min, lightning.centre_m.x), (0.0625, 100.0));
     let look = s.water.appearance();
     assert_eq!(
         (look.wave_strength, look.wave_slope, look.puddle_reflection),
@@ -328,6 +333,18 @@ fn values_out_of_domain_name_the_field() {
             "does not cross itself",
         ),
         ("outside: 0.5", "outside: 2", "areas.outside", "0 to 1"),
+        (
+            "intensity: 0.25",
+            "intensity: 0.75",
+            "weather.gusts.intensity",
+            "0 to 0.5",
+        ),
+        (
+            "nearest_m: 700",
+            "nearest_m: -1",
+            "weather.lightning.nearest_m",
+            "0 to 0.9",
+        ),
         (
             "wind_m_s: (1, 0, 0)",
             "wind_m_s: (1, inf, 0)",
