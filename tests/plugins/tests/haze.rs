@@ -442,7 +442,7 @@ fn an_area_has_a_fog_of_its_own_that_comes_in_over_its_soft_edge() {
         ))
         .id();
     let mask = with_mask(&mut test);
-    let mut at = |test: &mut TestApp, x: f32| {
+    let at = |test: &mut TestApp, x: f32| {
         test.look(Vec3::new(x, 12.0, 0.0), Vec3::new(x, 12.0, -10.0));
         test.frames(4, FRAME);
         read(test, &mask)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize]

@@ -82,7 +82,9 @@ fn row(picture: &RgbImage, y: u32) -> [f32; 4] {
             *sum += f32::from(value);
         }
     }
-    let all: f32 = sum.iter().sum();
+    // Where nothing is drawn: grey.
+    let all = sum.iter().sum::<f32>() + 3.0;
+    let sum = sum.map(|v| v + 1.0);
     [sum[0] / all, sum[1] / all, sum[2] / all, all]
 }
 
