@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::RenderLayers;
-use bevy::pbr::AtmosphereSettings;
 use bevy::prelude::*;
 use rain_render::glass::{MAX_PANES, Pane};
 
 use super::view::RainViewFrame;
+use crate::render_adapter::DrawnSky;
 
 /// A mesh that is seen through: rain behind its box is drawn before it, all other rain after it.
 ///
@@ -93,7 +93,7 @@ pub(super) fn choose_panes(
             &Camera,
             &GlobalTransform,
             Option<&RenderLayers>,
-            Has<AtmosphereSettings>,
+            Has<DrawnSky>,
             &mut ViewPanes,
         ),
         With<RainViewFrame>,

@@ -96,6 +96,9 @@ macro_rules! extract_as_they_are {
 
 extract_as_they_are!(RainMirrorView, RainMaskView, RainCoverView);
 
+/// What has Bevy draw its own sky in a view, after what is opaque.
+pub(crate) type DrawnSky = bevy::pbr::AtmosphereSettings;
+
 /// Lets shaders read the depth of what a camera has drawn.
 pub(crate) fn let_depth_be_read(camera: &mut Mut<Camera3d>) {
     let reading = TextureUsages::TEXTURE_BINDING.bits();
