@@ -118,7 +118,10 @@ impl Flash {
             FlashKind::InCloud
         };
         let nearest = match kind {
-            FlashKind::ToGround => (settings.nearest_m / settings.radius_m).powi(2),
+            FlashKind::ToGround => {
+                let share = settings.nearest_m / settings.radius_m;
+                share * share
+            }
             FlashKind::InCloud => 0.0,
         };
         let radius = settings.radius_m * ops::sqrt(draws.between(nearest, 1.0));

@@ -87,7 +87,8 @@ impl LightningSettings {
     /// Mean number of flashes a second.
     #[must_use]
     pub fn flashes_per_s(&self) -> f64 {
-        self.flashes_per_km2_min * PI * (self.radius_m * 1e-3).powi(2) / 60.0
+        let radius_km = self.radius_m * 1e-3;
+        self.flashes_per_km2_min * PI * (radius_km * radius_km) / 60.0
     }
 
     /// Middle of the disc at a time. Units: m.

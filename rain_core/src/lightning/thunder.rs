@@ -92,7 +92,11 @@ impl Thunder {
             let across = (point - listener).with_y(0.0).length();
             across <= thunder_reach_m(point.y - ground, own, air_temperature_c)
         };
-        let loud = flash.strokes().iter().map(|s| (s.peak_a / 30e3).powi(2)).sum::<f64>();
+        let loud = flash
+            .strokes()
+            .iter()
+            .map(|s| (s.peak_a / 30e3) * (s.peak_a / 30e3))
+            .sum::<f64>();
         let pieces = || {
             channel.main().windows(2).filter_map(|p| {
                 let middle = 0.5 * (p[0] + p[1]);

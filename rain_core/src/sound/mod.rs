@@ -8,6 +8,8 @@
 //! 10140-5: 65 to 70 dB), hard ground from 55 to 60 dB in heavy rain, soft ground below it. Nothing is said of the
 //! spectrum. Rain on water is loud under water (Nystuen 1986) but not above it.
 
+use core::f64::consts::PI;
+
 use crate::rainfall::measured_energy_j_m2_mm;
 use crate::weather::SurfaceClass;
 use crate::{error::clamped, ops};
@@ -17,7 +19,13 @@ const REFERENCE_W_M2: f64 = 1e-12;
 /// Share of the energy that becomes sound on standing water. Units: none.
 pub const WATER_SOUND_SHARE: f64 = 3e-7;
 /// Rings around a listener that are heard: middle radius and area. Units: m, m².
-pub const SOUND_RINGS: [[f64; 2]; 5] = [[0.7, 3.14], [1.5, 9.42], [3.0, 37.7], [6.0, 151.0], [12.0, 603.0]];
+pub const SOUND_RINGS: [[f64; 2]; 5] = [
+    [0.7, PI],
+    [1.5, 3.0 * PI],
+    [3.0, 12.0 * PI],
+    [6.0, 48.0 * PI],
+    [12.0, 192.0 * PI],
+];
 /// Places on each ring.
 pub const SOUND_PLACES: usize = 6;
 

@@ -213,7 +213,7 @@ fn dim(
     if lights.is_empty() {
         return;
     }
-    let rate = leading_view(&views).map_or(0.0, |place| rain.rain_at(place.translation().as_dvec3()));
+    let rate = leading_view(views).map_or(0.0, |place| rain.rain_at(place.translation().as_dvec3()));
     for (entity, settings, mut state, sun, environment, sky) in &mut lights {
         let state = &mut *state;
         if settings.is_changed() {

@@ -123,7 +123,8 @@ fn strokes_are_as_many_and_as_far_apart_as_measured() {
                 .windows(2)
                 .map(|s| (s[1].after_s - s[0].after_s, s[0].continuing_s))
         })
-        .filter_map(|(gap, continuing)| (continuing == 0.0).then(|| gap.log10()))
+        .filter(|(_, continuing)| *continuing == 0.0)
+        .map(|(gap, _)| gap.log10())
         .collect();
     let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
     let deviation = (gaps.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / gaps.len() as f64).sqrt();

@@ -8,7 +8,7 @@ use rain_core::optics::{
 };
 use rain_plugins::prelude::*;
 use test_support::app::TestApp;
-use test_support::gpu;
+use test_support::{gpu, world};
 
 const LUX: f32 = 80_000.0;
 const SECOND: Duration = Duration::from_secs(1);
@@ -99,7 +99,7 @@ fn heavier_rain_has_a_darker_sky() {
     for rate in [1.0, 10.0, 50.0] {
         let (mut test, _) = scene(rate, CloudLight::default());
         let camera = test.camera;
-        let map = Handle::<Image>::default();
+        let map = world::cube_of(test.world(), [true; 3]);
         test.world().entity_mut(camera).insert((
             EnvironmentMapLight {
                 diffuse_map: map.clone(),

@@ -1,13 +1,9 @@
 //! Haze in a Bevy app: when it is drawn and when it is skipped, and that drops and haze share one optical depth.
 
-use bevy::asset::RenderAssetUsages;
 use bevy::ecs::system::RunSystemOnce;
 use bevy::light::EnvironmentMapLight;
 use bevy::prelude::*;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
-use bevy::render::render_resource::{
-    Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
-};
 use image::RgbImage;
 use rain_core::haze::{HazeSharing, extinction_per_m, mist_extinction_per_m};
 use rain_core::rainfall::areas::{AreaRain, AreaSettings, AreaShape};
@@ -545,30 +541,6 @@ fn an_area_has_a_fog_of_its_own_that_comes_in_over_its_soft_edge() {
     assert!(at(&mut test, 100.0) < 1e-3);
 }
 
-/// A cube map of one colour.
-fn surroundings(test: &mut TestApp, colour: [bool; 3]) -> Handle<Image> {
-    // Half floats: one and zero.
-    let channel = |lit: bool| if lit { 0x3c00_u16 } else { 0 }.to_le_bytes();
-    let [r, g, b] = colour.map(channel);
-    let texel = [r, g, b, channel(true)].concat();
-    let mut image = Image::new(
-        Extent3d {
-            width: 4,
-            height: 4,
-            depth_or_array_layers: 6,
-        },
-        TextureDimension::D2,
-        texel.repeat(16 * 6),
-        TextureFormat::Rgba16Float,
-        RenderAssetUsages::RENDER_WORLD,
-    );
-    image.texture_view_descriptor = Some(TextureViewDescriptor {
-        dimension: Some(TextureViewDimension::Cube),
-        ..default()
-    });
-    test.world().resource_mut::<Assets<Image>>().add(image)
-}
-
 #[test]
 fn the_open_sky_lights_far_rain_where_it_is_given_and_the_cameras_surroundings_do_otherwise() {
     if !gpu::available() {
@@ -576,7 +548,7 @@ fn the_open_sky_lights_far_rain_where_it_is_given_and_the_cameras_surroundings_d
     }
     let mut test = hazy();
     test.world().spawn(Weather::rain(60.0));
-    let [red, blue] = [[true, false, false], [false, false, true]].map(|c| surroundings(&mut test, c));
+    let [red, blue] = [[true, false, false], [false, false, true]].map(|c| world::cube_of(test.world(), c));
     let camera = test.camera;
     test.world().entity_mut(camera).insert(EnvironmentMapLight {
         diffuse_map: red.clone(),

@@ -281,7 +281,6 @@ fn a_mirror_shows_the_haze_before_what_it_mirrors() {
     let clear = red(&picture(true, None)) - red(&picture(false, None));
     let hazy = red(&picture(true, fog(0.3))) - red(&picture(false, fog(0.3)));
     // The eye is 2.6 m before the water, the column 2.2 m behind: with the fog on the second way, too, e^(−0.3·4.8).
-    println!("{clear} {hazy}");
     assert!(clear > 500.0, "the column is mirrored: {clear}");
     assert!(hazy < 0.62 * clear && hazy > 0.02 * clear, "{hazy} of {clear}");
 }

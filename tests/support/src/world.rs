@@ -1,6 +1,10 @@
 //! Small worlds of boxes, put together by hand so that a test knows every edge.
 
+use bevy::asset::RenderAssetUsages;
 use bevy::prelude::*;
+use bevy::render::render_resource::{
+    Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+};
 use rain_plugins::prelude::SurfaceSettings;
 
 /// Colour of [`block`]s: linear reflectance of a mid-grey stone.
@@ -84,4 +88,28 @@ pub fn room(world: &mut World) -> [Entity; 4] {
         wall("wall at low x", [-b, 0.0, -b], [-a, h, b]),
         wall("wall at high x", [a, 0.0, -b], [b, h, b]),
     ]
+}
+
+/// A cube map of one colour, each channel full or empty: what surrounds a camera.
+pub fn cube_of(world: &mut World, colour: [bool; 3]) -> Handle<Image> {
+    // Half floats: one and zero.
+    let channel = |lit: bool| if lit { 0x3c00_u16 } else { 0 }.to_le_bytes();
+    let [r, g, b] = colour.map(channel);
+    let texel = [r, g, b, channel(true)].concat();
+    let mut image = Image::new(
+        Extent3d {
+            width: 4,
+            height: 4,
+            depth_or_array_layers: 6,
+        },
+        TextureDimension::D2,
+        texel.repeat(16 * 6),
+        TextureFormat::Rgba16Float,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::Cube),
+        ..default()
+    });
+    world.resource_mut::<Assets<Image>>().add(image)
 }

@@ -16,7 +16,7 @@ fn airy(z: f64) -> [f64; 2] {
         return airy_far(-z);
     }
     // Ai(0) and −Ai′(0).
-    const AT_ZERO: [f64; 2] = [0.355_028_053_887_817_24, 0.258_819_403_792_806_8];
+    const AT_ZERO: [f64; 2] = [0.355_028_053_887_817_2, 0.258_819_403_792_806_8];
     let cube = z * z * z;
     let (mut even, mut odd) = (1.0, z);
     let (mut even_slope, mut odd_slope) = (0.5 * z * z, 1.0);

@@ -47,7 +47,7 @@ impl Way {
     }
 
     /// Angle from the bow towards the lit side, and its slope by the angle of incidence.
-    fn from_bow(&self, incidence: f64) -> [f64; 2] {
+    fn off_bow(&self, incidence: f64) -> [f64; 2] {
         let r = self.refraction(incidence);
         let rate = ops::cos(incidence) / (self.n * ops::cos(r));
         [
@@ -65,7 +65,7 @@ impl Way {
     fn incidence(&self, angle: f64, [mut low, mut high]: [f64; 2], rising: bool, start: f64) -> f64 {
         let mut at = start.clamp(low, high);
         for _ in 0..60 {
-            let [value, slope] = self.from_bow(at);
+            let [value, slope] = self.off_bow(at);
             let miss = value - angle;
             if (miss > 0.0) == rising {
                 high = at;
@@ -90,7 +90,7 @@ impl Way {
     /// Signed roots of the light per steradian of each polarisation, times the root of the sine of the angle from the axis.
     fn amplitudes(&self, incidence: f64) -> [f64; 2] {
         let (ci, cr) = (ops::cos(incidence), ops::cos(self.refraction(incidence)));
-        let [_, slope] = self.from_bow(incidence);
+        let [_, slope] = self.off_bow(incidence);
         let spread = ops::sqrt((ops::sin(incidence) * ci / (PI * slope.abs())).max(0.0));
         let n = self.n;
         [(ci - n * cr) / (ci + n * cr), (n * ci - cr) / (n * ci + cr)].map(|reflected| {
@@ -116,8 +116,8 @@ impl Order {
         let (sr, cr) = (ops::sin(refraction), ops::cos(refraction));
         let curve = 2.0 * chords * (si * cr - ci * sr / chords) / (n * cr * cr);
         let slope = ops::cbrt(2.0 * ci * ci / curve);
-        let end_rad = way.from_bow(0.0)[0];
-        let last_rad = way.from_bow(FRAC_PI_2)[0];
+        let end_rad = way.off_bow(0.0)[0];
+        let last_rad = way.off_bow(FRAC_PI_2)[0];
         let last_length = way.length(FRAC_PI_2);
         let mut rays = [NEAR_RAD, NEAR_RAD];
         let off = ops::sqrt(2.0 * NEAR_RAD / curve);

@@ -93,7 +93,6 @@ fn bows_of_small_drops_are_those_of_mies_series() {
             let outside = fresnel((0.5 * angle).cos(), N) / (4.0 * PI);
             worst = worst.max((ours + outside - mie).abs() / greatest);
         }
-        println!("{radius_um} µm: {worst}");
         assert!(worst < 0.12, "{radius_um} µm: {worst}");
     }
 }
@@ -116,7 +115,6 @@ fn colours_of_the_bow_of_large_drops_are_those_of_rays_of_each_wavelength() {
     }
     let greatest = rings.iter().map(|(_, _, t)| luminance(*t)).fold(0.0, f64::max);
     for (from, ours, traced) in rings {
-        println!("{from:5.1} {ours:.6?} {traced:.6?}");
         let off = (luminance(ours) - luminance(traced)).abs() / greatest;
         assert!(off < 0.1, "{from}: {ours:?} {traced:?}");
     }
@@ -167,7 +165,6 @@ fn the_bow_of_rain_is_the_mean_over_its_drops() {
         });
         let expected = luminance(reference::rec709(&spectrum));
         let ours = luminance(bow.per_sr(degrees.to_radians()));
-        println!("{degrees}: {ours} {expected}");
         assert!(
             (ours - expected).abs() < 0.02 * greatest,
             "{degrees}: {ours} {expected}"
@@ -240,7 +237,6 @@ fn small_drops_make_a_wide_white_bow() {
     let [fog, drizzle, rain] = [10e-6, 100e-6, 1e-3].map(|radius| tables().of_radius(radius));
     let widths = [&fog, &drizzle, &rain].map(width);
     let colours = [&fog, &drizzle, &rain].map(colourfulness);
-    println!("{widths:?} {colours:?}");
     assert!(widths[0] > 5.0 && widths[0] > 2.0 * widths[2], "{widths:?}");
     assert!(colours[0] < 0.35 && colours[2] > 0.9, "{colours:?}");
     // It stands further in, too.

@@ -50,8 +50,8 @@ pub fn mie_phase_per_sr(size: f64, index: f64, angles: &[f64]) -> Vec<f64> {
     let mut sums = vec![[[0.0_f64; 2]; 2]; angles.len()];
     let mut angular = vec![[0.0_f64, 1.0]; angles.len()];
     let (mut psi, mut chi) = ([size.cos(), size.sin()], [-size.sin(), size.cos()]);
-    for n in 1..=terms {
-        let order = n as f64;
+    for (i, slope) in derivative[1..=terms].iter().enumerate() {
+        let order = (i + 1) as f64;
         let next_psi = (2.0 * order - 1.0) * psi[1] / size - psi[0];
         let next_chi = (2.0 * order - 1.0) * chi[1] / size - chi[0];
         let [xi, xi_before] = [[next_psi, -next_chi], [psi[1], -chi[1]]];
@@ -60,8 +60,8 @@ pub fn mie_phase_per_sr(size: f64, index: f64, angles: &[f64]) -> Vec<f64> {
             let below = [factor * xi[0] - xi_before[0], factor * xi[1] - xi_before[1]];
             over([factor * next_psi - psi[1], 0.0], below)
         };
-        let a = coefficient(derivative[n] / index);
-        let b = coefficient(derivative[n] * index);
+        let a = coefficient(slope / index);
+        let b = coefficient(slope * index);
         let weight = (2.0 * order + 1.0) / (order * (order + 1.0));
         for ((angle, [before, now]), sum) in angles.iter().zip(&mut angular).zip(&mut sums) {
             let cosine = angle.cos();
