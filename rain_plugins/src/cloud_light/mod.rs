@@ -127,11 +127,11 @@ impl CloudLightState {
         self.share
     }
 
-    /// Follows the rain; a first look takes it as it is.
+    /// Follows the rain; a first look takes it as it is, once time goes on: before that there is no weather yet.
     fn advance(&mut self, rate_mm_h: f64, dt_s: f64) {
         let raining = rate_mm_h > 0.0;
         if !self.known {
-            (self.known, self.share, self.rate_mm_h) = (true, f64::from(u8::from(raining)), rate_mm_h);
+            (self.known, self.share, self.rate_mm_h) = (dt_s > 0.0, f64::from(u8::from(raining)), rate_mm_h);
             return;
         }
         let time = f64::from(self.settings.transition_s);

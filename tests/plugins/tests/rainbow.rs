@@ -116,7 +116,11 @@ fn bows_stand_at_42_and_51_degrees_red_outside_and_red_inside() {
             (red - 42.0).abs() < 0.6 && (blue - 40.5).abs() < 0.8,
             "{sun}: {red} {blue}"
         );
-        assert!(blue < bright && bright < red + 0.1, "{blue} {bright} {red}");
+        // The brightest row may be that of the blue: rows are half a degree high.
+        assert!(
+            blue <= bright && bright < red + 0.1 && blue < red,
+            "{blue} {bright} {red}"
+        );
         let second_red = peak(&picture, 48.0 - sun, 56.0 - sun, |c| c[0]) + sun;
         let second_blue = peak(&picture, 51.0 - sun, 57.0 - sun, |c| c[2]) + sun;
         assert!((second_red - 50.5).abs() < 0.7, "{sun}: {second_red}");
@@ -148,7 +152,8 @@ fn without_the_component_a_sun_or_rain_there_is_no_bow_and_no_work() {
     assert_eq!(picture(&mut off), without, "off");
     assert!(off.skipped(PassName::Rainbow, SkipReason::Disabled) >= 6);
     let mut night = with_bow(shower(15.0, 0.0), 1.0);
-    night.frames(4, FRAME);
+    // The first frame has no haze yet.
+    night.frames(6, FRAME);
     assert!(night.skipped(PassName::Rainbow, SkipReason::NoSun) >= 4);
     assert_eq!(night.recorded(PassName::Rainbow), 0);
     let mut clear = with_bow(shower(15.0, 8_000.0), 1.0);

@@ -54,7 +54,11 @@ fn a_step_in_a_puddle_is_seen_to_splash_and_is_over_in_half_a_second() {
         return;
     }
     let mut test = after_rain();
+    // What changes by itself in that time: water dries.
+    let before = test.picture();
+    test.frames(38, FRAME);
     let still = test.picture();
+    let drift = different(&still, &before);
     test.reset();
     test.frames(2, FRAME);
     assert_eq!(test.recorded(PassName::Splash), 0, "nobody steps");
@@ -78,8 +82,8 @@ fn a_step_in_a_puddle_is_seen_to_splash_and_is_over_in_half_a_second() {
     assert_eq!(test.recorded(PassName::Splash), 0, "all has landed");
     let over = test.picture();
     assert!(
-        different(&over, &still) * 20 < strong,
-        "{} of {strong} stay",
+        different(&over, &still) * 20 < strong + 40 * drift && drift * 4 < strong,
+        "{} of {strong} stay, {drift} change by themselves",
         different(&over, &still)
     );
     // A gentler step throws less, and none is drawn where splashes are off.
