@@ -140,7 +140,7 @@ fn density() -> Study {
     };
     Study {
         name: "splash-density",
-        title: "Area that crowns cover in a view under 25 mm/h, by the number of splashes drawn",
+        title: "Area of crowns under 25 mm/h, by the splashes drawn",
         norm: "rms over frames, against the mean of all splashes",
         unit: "frame on the CPU",
         variants: vec![

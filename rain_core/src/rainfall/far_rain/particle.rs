@@ -16,7 +16,7 @@ pub const FAR_OPACITY: f64 = 0.2;
 /// How much brighter or darker than the curtain a particle is, at most; as many are the one as the other, so the curtain's
 /// light is kept. Chosen by eye: shafts shade each other, and a curtain that one cannot see through would be a flat wall. Units:
 /// none.
-pub const FAR_SHADE: f64 = 0.4;
+pub const FAR_SHADE: f64 = 0.2;
 
 /// Widest soft threshold in ranks at which particles come and go; at low densities it is as wide as the density. Units: none.
 const SOFT: f64 = 0.25;
