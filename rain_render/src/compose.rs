@@ -35,6 +35,8 @@ pub const LIBRARIES: &[Library] = library![
     "streak",
     "far_rain",
     "drop_light",
+    "drop_body",
+    "near_streak",
     "lamp_light",
     "surroundings",
     "glass",

@@ -80,8 +80,16 @@ impl RainfallGpu {
             "rainfall_draw",
             &[
                 uniform_entry(0, raster, size_of::<RainfallView>()),
-                storage_entry(1, wgpu::ShaderStages::VERTEX, true),
+                storage_entry(1, raster, true),
                 texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
+                storage_entry(3, wgpu::ShaderStages::FRAGMENT, true),
+                texture_entry(
+                    4,
+                    wgpu::ShaderStages::FRAGMENT,
+                    wgpu::TextureSampleType::Float { filterable: true },
+                    wgpu::TextureViewDimension::Cube,
+                ),
+                sampler_entry(5, wgpu::ShaderStages::FRAGMENT),
             ],
         );
         Self {
@@ -195,6 +203,9 @@ impl RainfallViewGpu {
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, self.streaks.as_entire_binding()),
                 entry(2, wgpu::BindingResource::TextureView(&scene)),
+                entry(3, self.records.as_entire_binding()),
+                entry(4, wgpu::BindingResource::TextureView(&environment)),
+                entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
             ],
         }));
     }
