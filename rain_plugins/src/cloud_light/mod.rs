@@ -200,7 +200,7 @@ fn restore(
     }
 }
 
-fn dim(
+pub(crate) fn dim(
     clock: Res<RainClock>,
     rain: RainQueries,
     views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,

@@ -28,10 +28,12 @@ impl Plugin for LightningPlugin {
         app.register_type::<LightningLook>()
             .init_resource::<LightningLook>()
             .init_resource::<show::Shown>()
+            .add_systems(PreUpdate, show::take_back.run_if(show::was_lit))
             .add_systems(
                 PostUpdate,
                 show::show_lightning
                     .run_if(show::something_flashes)
+                    .after(crate::cloud_light::dim)
                     .before(TransformSystems::Propagate)
                     .before(VisibilitySystems::VisibilityPropagate),
             );

@@ -60,19 +60,20 @@ struct Added {
 }
 
 impl Added {
-    /// The app's own value: what it was, unless the app has written another since.
-    fn own(&mut self, now: f32) -> f32 {
-        if self.written != Some(now) {
-            self.base = now;
-        }
-        self.base
+    /// What to write in place of the app's own value.
+    fn with(&mut self, own: f32, more: f32) -> f32 {
+        let sum = own + more;
+        (self.base, self.written) = (own, Some(sum));
+        sum
     }
 
-    /// What to write: the own value and `more`.
-    fn with(&mut self, now: f32, more: f32) -> f32 {
-        let sum = self.own(now) + more;
-        self.written = (more > 0.0).then_some(sum);
-        sum
+    /// The app's own value: what it was, unless the app has written another since.
+    fn taken_back(&mut self, now: f32) -> f32 {
+        if self.written.take() == Some(now) {
+            self.base
+        } else {
+            now
+        }
     }
 }
 
@@ -151,6 +152,30 @@ pub(super) struct Lit<'w, 's> {
     materials: Option<ResMut<'w, Assets<LightningMaterial>>>,
 }
 
+/// Takes away what the last frame's flash has added, before anybody else looks at it: clouds dim what is the app's own.
+pub(super) fn take_back(
+    mut shown: ResMut<Shown>,
+    ambient: Option<ResMut<GlobalAmbientLight>>,
+    mut skies: Query<&mut Skybox>,
+) {
+    if let Some(mut ambient) = ambient {
+        let own = shown.ambient.taken_back(ambient.brightness);
+        if own != ambient.brightness {
+            ambient.brightness = own;
+        }
+    }
+    for (entity, mut added) in shown.skies.drain(..) {
+        if let Ok(mut sky) = skies.get_mut(entity) {
+            sky.brightness = added.taken_back(sky.brightness);
+        }
+    }
+}
+
+/// Whether the last frame showed a flash.
+pub(super) fn was_lit(shown: Res<Shown>) -> bool {
+    shown.lit
+}
+
 pub(super) fn show_lightning(
     mut commands: Commands,
     time: Res<Time>,
@@ -222,29 +247,15 @@ fn light_scene(
     shadows: bool,
 ) {
     let mean = ambient_lux / PI;
-    if let Some(ambient) = &mut lit.ambient {
-        let next = shown.ambient.with(ambient.brightness, mean);
-        if next != ambient.brightness {
-            ambient.brightness = next;
+    if mean > 0.0 {
+        if let Some(ambient) = &mut lit.ambient {
+            ambient.brightness = shown.ambient.with(ambient.brightness, mean);
         }
-    }
-    let skies = &mut shown.skies;
-    for (entity, mut sky) in &mut lit.skies {
-        let index = match skies.iter().position(|(known, _)| *known == entity) {
-            Some(index) => index,
-            None if mean > 0.0 => {
-                skies.push((entity, Added::default()));
-                skies.len() - 1
-            }
-            None => continue,
-        };
-        let next = skies[index].1.with(sky.brightness, SKY_SHARE * mean);
-        if next != sky.brightness {
-            sky.brightness = next;
+        for (entity, mut sky) in &mut lit.skies {
+            let mut added = Added::default();
+            sky.brightness = added.with(sky.brightness, SKY_SHARE * mean);
+            shown.skies.push((entity, added));
         }
-    }
-    if mean <= 0.0 {
-        skies.clear();
     }
     let pose = Transform::default().looking_to(-towards.normalize_or(Vec3::Y), Vec3::X);
     let light = DirectionalLight {
@@ -417,15 +428,15 @@ mod tests {
         let mut added = Added::default();
         let mut value = added.with(10.0, 5.0);
         assert_eq!(value, 15.0);
+        value = added.taken_back(value);
+        assert_eq!(value, 10.0);
+        assert_eq!(added.taken_back(15.0), 15.0, "taken back once");
         value = added.with(value, 2.0);
         assert_eq!(value, 12.0);
         // The app sets another value amid the flash.
+        assert_eq!(added.taken_back(40.0), 40.0);
         value = added.with(40.0, 3.0);
         assert_eq!(value, 43.0);
-        value = added.with(value, 0.0);
-        assert_eq!(value, 40.0);
-        assert_eq!(added.with(value, 0.0), 40.0);
-        // The same value again, amid nothing.
-        assert_eq!(added.with(43.0, 1.0), 44.0);
+        assert_eq!(added.taken_back(value), 40.0);
     }
 }

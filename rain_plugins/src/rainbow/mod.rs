@@ -103,7 +103,7 @@ impl Plugin for RainbowPlugin {
 
 fn aim_rainbows(
     report: Res<RainReport>,
-    suns: Query<&DirectionalLight>,
+    suns: Query<(&DirectionalLight, &InheritedVisibility)>,
     // Made for the first bow.
     mut tables: Local<Option<RainbowTables>>,
     mut errors: MessageWriter<RainConfigError>,
@@ -119,7 +119,7 @@ fn aim_rainbows(
         report.skipped(PassName::Rainbow, SkipReason::Disabled);
         return;
     }
-    let sunny = suns.iter().any(|sun| sun.illuminance > 0.0);
+    let sunny = suns.iter().any(|(sun, seen)| seen.get() && sun.illuminance > 0.0);
     for (entity, rainbow, mut light, camera, haze) in &mut views {
         let light = &mut *light;
         if rainbow.is_changed() || light.settings.is_none() {

@@ -219,7 +219,7 @@ pub(super) fn extract_rain(
         Option<Res<WaveNormalMaps>>,
     )>,
     ambient: Extract<Option<Res<GlobalAmbientLight>>>,
-    suns: Extract<Query<(&DirectionalLight, &GlobalTransform)>>,
+    suns: Extract<Query<(&DirectionalLight, &GlobalTransform, &InheritedVisibility)>>,
     views: Extract<
         Query<(
             RenderEntity,
@@ -234,7 +234,8 @@ pub(super) fn extract_rain(
 ) {
     let sun = suns
         .iter()
-        .max_by(|(a, _), (b, _)| a.illuminance.total_cmp(&b.illuminance));
+        .filter(|(_, _, seen)| seen.get())
+        .max_by(|(a, ..), (b, ..)| a.illuminance.total_cmp(&b.illuminance));
     let (images, levels, films, appearance, mirrors, maps) = &*water;
     let maps = maps.as_ref().filter(|maps| maps.images().is_some());
     // What does not validate has been named in the log.
@@ -247,8 +248,8 @@ pub(super) fn extract_rain(
             complete: map.complete.clone(),
         }),
         ambient: ambient.as_ref().map_or(Vec3::ZERO, |a| linear(a.color) * a.brightness),
-        sun_direction: sun.map_or(Vec3::Y, |(_, t)| t.back().into()),
-        sun: sun.map_or(Vec3::ZERO, |(l, _)| linear(l.color) * l.illuminance),
+        sun_direction: sun.map_or(Vec3::Y, |(_, t, _)| t.back().into()),
+        sun: sun.map_or(Vec3::ZERO, |(l, ..)| linear(l.color) * l.illuminance),
         surface: surface.as_ref().map(|surface| ExtractedSurface {
             state: surface.state,
             artist: surface.artist,

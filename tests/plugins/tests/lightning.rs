@@ -1,6 +1,6 @@
 //! Lightning in a Bevy app: off by default, what it lights and shows, and that nothing of it stays.
 
-use bevy::light::{DirectionalLight, GlobalAmbientLight};
+use bevy::light::{DirectionalLight, GlobalAmbientLight, Skybox};
 use bevy::prelude::*;
 use image::RgbImage;
 use rain_core::lightning::{Flash, FlashKind, for_each_flash};
@@ -218,4 +218,42 @@ fn a_flash_in_the_cloud_lights_from_above_without_a_channel() {
         mean(&during),
         mean(&before)
     );
+}
+
+#[test]
+fn clouds_that_dim_the_sky_and_a_flash_that_lights_it_leave_it_as_it_was() {
+    if !gpu::available() {
+        return;
+    }
+    let flash = lone(FlashKind::ToGround, |flash| flash.strokes()[0].peak_a > 20e3);
+    let mut test = night(true, flash.place_m.as_vec3());
+    let image = world::cube_of(test.world(), [true; 3]);
+    let camera = test.camera;
+    let clouds = CloudLight {
+        transition_s: 0.0,
+        ..default()
+    };
+    test.world().entity_mut(camera).insert((
+        Skybox {
+            image: Some(image),
+            brightness: 8.0,
+            ..default()
+        },
+        clouds,
+    ));
+    let mut weather = test.world().query::<&mut Weather>();
+    for mut weather in weather.iter_mut(test.app.world_mut()) {
+        weather.intensity_mm_h = 10.0;
+    }
+    let sky = |test: &TestApp| test.app.world().get::<Skybox>(camera).expect("a sky").brightness;
+    run_to(&mut test, flash.time_s - 0.5);
+    let before = sky(&test);
+    assert!(before < 0.5 * 8.0, "dimmed: {before}");
+    run_to(&mut test, flash.time_s + 0.005);
+    assert!(sky(&test) > 1.5 * before, "lit: {} of {before}", sky(&test));
+    run_to(&mut test, flash.time_s + 4.0);
+    assert!((sky(&test) / before - 1.0).abs() < 1e-3, "{} of {before}", sky(&test));
+    test.world().entity_mut(camera).remove::<CloudLight>();
+    test.frames(2, FRAME);
+    assert!((sky(&test) - 8.0).abs() < 1e-3, "the app's own: {}", sky(&test));
 }
