@@ -66,8 +66,9 @@ pub struct RainView {
     pub far_rain: Option<bool>,
     /// Streaks that are wider than a pixel and a half show what their drops do: the surroundings refracted upside down, glints
     /// of the sun and of the strongest lamp, and how they swing; wholly from four pixels on. The others stay as they are.
-    /// `false`: all streaks are even strips. Default: `true`.
-    pub near_patterns: bool,
+    /// `Some(false)`: all streaks are even strips. `None`: on a GPU, not on a software adapter, where a picture full of wide
+    /// streaks takes ten times as long.
+    pub near_patterns: Option<bool>,
 }
 
 impl Default for RainView {
@@ -82,7 +83,7 @@ impl Default for RainView {
             detail: None,
             cards: None,
             far_rain: None,
-            near_patterns: true,
+            near_patterns: None,
         }
     }
 }
@@ -135,6 +136,11 @@ impl RainView {
     /// Whether cards are drawn.
     pub(super) fn draws_cards(&self, software: SoftwareAdapter) -> bool {
         self.cards.unwrap_or(!software.0)
+    }
+
+    /// Whether near streaks have patterns.
+    fn draws_patterns(&self, software: SoftwareAdapter) -> bool {
+        self.near_patterns.unwrap_or(!software.0)
     }
 
     /// Whether far rain is drawn.
@@ -338,7 +344,7 @@ pub(crate) fn fill_containers(
             contrast: settings.contrast,
             kappa: kappa as f32,
             soft_m: settings.soft_m,
-            patterned: settings.near_patterns,
+            patterned: settings.draws_patterns(*software),
             detail: settings.detail,
         });
     }

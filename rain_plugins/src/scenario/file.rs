@@ -468,8 +468,8 @@ pub struct RainSettings {
     pub cards: Option<bool>,
     /// Whether showers seen from outside are drawn as particles over their haze. Default: on a GPU, not on a software adapter.
     pub far_rain: Option<bool>,
-    /// Whether near streaks show what their drops do. Default: true.
-    pub near_patterns: bool,
+    /// Whether near streaks show what their drops do. Default: on a GPU, not on a software adapter.
+    pub near_patterns: Option<bool>,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -513,7 +513,7 @@ impl Default for RainSettings {
             rainbow: 0.0,
             cards: None,
             far_rain: None,
-            near_patterns: true,
+            near_patterns: None,
             lens: Lens::Off,
             look: WetLook::Physical,
         }
