@@ -25,6 +25,7 @@
 //! | [`cloud_light::CloudLightPlugin`] | clouds of the rain that dim lights and skies that ask for it |
 //! | [`cover::CoverPlugin`] | what stops rain |
 //! | [`haze::HazePlugin`] | haze of rain, far showers, glow of lamps |
+//! | [`rain_bloom::RainBloomPlugin`] | a wider bloom in rain, for cameras that ask for it |
 //! | [`rainbow::RainbowPlugin`] | rainbows in the haze of cameras that ask for them |
 //! | [`rainfall::RainfallPlugin`] | streaks near each marked camera, cards of many beyond |
 //! | [`splash::SplashPlugin`] | splashes where the rain lands |
@@ -37,8 +38,10 @@
 pub mod cloud_light;
 pub mod cover;
 pub mod haze;
+mod held;
 pub mod lens;
 pub mod lightning;
+pub mod rain_bloom;
 pub mod rainbow;
 pub mod rainfall;
 pub mod render_adapter;
@@ -72,6 +75,7 @@ impl PluginGroup for RainPlugins {
             .add(haze::HazePlugin)
             .add(rainbow::RainbowPlugin)
             .add(cloud_light::CloudLightPlugin)
+            .add(rain_bloom::RainBloomPlugin)
             .add(splash::SplashPlugin)
             .add(surface::WetSurfacePlugin)
             .add(waves::WavesPlugin)
@@ -111,6 +115,7 @@ pub mod prelude {
     pub use crate::haze::{AreaFog, ArtistFog, FarRainSettings, HazeMask, HazePlugin, HazeSettings, HazeSky, Mist};
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
     pub use crate::lightning::{LightningLight, LightningLook};
+    pub use crate::rain_bloom::{RainBloom, RainBloomPlugin};
     pub use crate::rainbow::{Rainbow, RainbowPlugin};
     pub use crate::rainfall::{CardSettings, RainView, SeenThrough};
     pub use crate::render_adapter::RainRenderStatus;

@@ -16,6 +16,8 @@ pub enum PassName {
     Ripples,
     /// Interactive water in puddles.
     Waves,
+    /// Light that puddles throw onto walls.
+    Caustics,
     /// The mirrored view.
     Reflection,
     /// Haze of rain.
@@ -47,6 +49,7 @@ impl PassName {
             Self::WaterMap => "water_map",
             Self::Ripples => "ripples",
             Self::Waves => "waves",
+            Self::Caustics => "caustics",
             Self::Reflection => "reflection",
             Self::Haze => "haze",
             Self::FarRain => "far_rain",

@@ -187,6 +187,8 @@ struct SurfaceParams {
     water: WaterLook,
     mirrors: array<ReflectionParams, 4>,
     map: WaterMapPlaces,
+    // Light that water throws onto walls. x, y, z: towards the light, w: gain, 0 for none.
+    caustics: vec4<f32>,
 }
 
 struct MaskView {
@@ -288,6 +290,19 @@ struct RingLayerParams {
     hidden_variance: f32,
     pad_a: u32,
     pad_b: u32,
+}
+
+// Mirrored rays of a frame.
+struct CausticParams {
+    // Unit vector towards the light; w unused.
+    towards: vec4<f32>,
+    // 1 / side of the tile, 1/m.
+    per_side: f32,
+    // Multiple of the slopes.
+    strength: f32,
+    // Radius of the sun's disc for each metre of way, texels.
+    blur: f32,
+    pad_a: f32,
 }
 
 // What a surface does with water, in mm and s; see ColumnRules in rain_core.

@@ -7,7 +7,7 @@ use rain_core::optics::{BOW_KNOTS, BOW_SPAN_DEG, BOW_STEP_DEG};
 use rain_core::rainfall::{FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, RANGE_CAP_M};
 use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
-use rain_core::waves::RING_FADE;
+use rain_core::waves::{CAUSTIC_END_M, CAUSTIC_RAYS, CAUSTIC_TEXELS, CAUSTIC_WAYS_M, LEAST_ELEVATION, RING_FADE};
 
 /// Structs that cross from the CPU.
 pub const TYPES: &str = include_str!("../shaders/types.wgsl");
@@ -54,6 +54,7 @@ pub const LIBRARIES: &[Library] = library![
     "slopes",
     "waves",
     "ring_layers",
+    "caustics",
     "water_column",
     "water_map",
     "rain_areas",
@@ -90,6 +91,7 @@ pub const PASSES: &[Pass] = passes![
     "reflection_mips",
     "waves",
     "ring_layers",
+    "caustics",
     "water_map",
     "streak_texture",
     "lattice_draw",
@@ -151,6 +153,9 @@ pub fn constants() -> String {
         ("RAIN_WIND_DIRECTIONS", WIND_DIRECTIONS),
         ("RAIN_WAVE_PERIOD_S", WAVE_PERIOD_S),
         ("RAIN_RING_FADE", f64::from(RING_FADE)),
+        ("RAIN_CAUSTIC_FIRST_M", CAUSTIC_WAYS_M[0]),
+        ("RAIN_CAUSTIC_END_M", CAUSTIC_END_M),
+        ("RAIN_LEAST_ELEVATION", LEAST_ELEVATION),
         ("RAIN_FLOW_PERIOD_S", FLOW_PERIOD_S),
         ("RAIN_FLOW_NOISE", FLOW_NOISE),
         ("RAIN_SPLASH_CELL_M", SPLASH_CELL_M),
@@ -180,6 +185,8 @@ pub fn constants() -> String {
     for (name, value) in [
         ("RAIN_RATE_KNOTS", RATE_KNOTS as u32),
         ("RAIN_BOW_KNOTS", BOW_KNOTS as u32),
+        ("RAIN_CAUSTIC_TEXELS", CAUSTIC_TEXELS),
+        ("RAIN_CAUSTIC_RAYS", CAUSTIC_RAYS),
         ("RAIN_HAZE_AZIMUTHS", HAZE_AZIMUTHS),
         ("RAIN_HAZE_INTERVALS", HAZE_INTERVALS),
     ] {

@@ -148,6 +148,7 @@ pub struct SurfaceParams {
     pub water: WaterLook,
     pub mirrors: [ReflectionParams; MAX_MIRRORS],
     pub map: WaterMapPlaces,
+    pub caustics: [f32; 4],
 }
 
 /// The mask pass's view.
@@ -226,6 +227,17 @@ pub struct RingLayerParams {
     pub hidden_variance: f32,
     pub pad_a: u32,
     pub pad_b: u32,
+}
+
+/// Mirrored rays of a frame.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct CausticParams {
+    pub towards: [f32; 4],
+    pub per_side: f32,
+    pub strength: f32,
+    pub blur: f32,
+    pub pad_a: f32,
 }
 
 /// What a surface does with water.
@@ -556,7 +568,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(WaterLook: absorption, mud, ambient, ripples, waves, place, map, more_map),
         layout!(ReflectionParams: clip_from_eye, eye, plane),
         layout!(WaterMapPlaces: fine, middle, coarse, fine_centre, middle_centre, coarse_centre, pad),
-        layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors, map),
+        layout!(SurfaceParams: eye, state, artist, cover, levels, water, mirrors, map, caustics),
         layout!(MaskView: eye_from_clip, screen, corner, surface),
         layout!(WaveParams: cells, periodic, offset, moved, first_source, first_bin, courant_squared, g, keep, inverse_keep,
             blend, per_cell, rim, rim_damping, hidden_variance, pad_a, pad_b, pad_c),
@@ -564,6 +576,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(WaveBin: place, first, count, pad),
         layout!(RingLayerParams: parts, weights, wholes, cycles, offset_x, offset_z, cells, texels, repeats, by_number,
             steepness, hidden_variance, pad_a, pad_b),
+        layout!(CausticParams: towards, per_side, strength, blur, pad_a),
         layout!(ColumnRules: capacity, texture, drain, soil, dry_soil, soil_decay, recovery, pad),
         layout!(WaterMapParams: rules, cover, offset, kept, seed_low, seed_cells, ground_cells, ground_corner, corner,
             texels, level, cell, ground_step, per_ground_cell, base, rain, evaporation, time, pools),

@@ -5,6 +5,7 @@
 //! its inputs (`params`), its GPU objects (`prepare`), its commands (`encode`).
 
 mod bindings;
+pub mod caustics;
 pub mod compose;
 pub mod cover;
 pub mod far_rain;

@@ -2,6 +2,7 @@
 
 mod airlight;
 mod artist;
+mod bloom;
 mod extinction;
 mod mist;
 mod profile;
@@ -11,6 +12,7 @@ mod visibility;
 
 pub use airlight::{LEAST_LAMP_M, cone_span_m, drop_phase_integral, drop_phase_per_sr, lamp_glow_per_m};
 pub use artist::{FogFade, LUMA_GAMMA, LUMA_LINEAR, ToyShopGlow, artist_fog_amount, desaturated, fog_density};
+pub use bloom::bloom_in_rain;
 pub use extinction::{
     EXTINCTION_EFFICIENCY, extinction_per_m, inscattered, inscattered_f32, obscured, obscured_f32, transmittance,
     transmittance_f32,

@@ -17,6 +17,7 @@
 mod bands;
 mod bed;
 mod border;
+mod caustics;
 mod circles;
 mod dispersion;
 mod double;
@@ -35,6 +36,10 @@ mod stencil;
 mod sweep;
 
 pub use border::Border;
+pub use caustics::{
+    CAUSTIC_END_M, CAUSTIC_RAYS, CAUSTIC_TEXELS, CAUSTIC_WAYS_M, LEAST_ELEVATION, SUN_RADIUS_RAD, caustic_at,
+    caustic_map, caustic_shift, sun_blur_texels,
+};
 pub use circles::{Circle, CircleMap, CirclePoint, CircleSettings, CircleTexel};
 pub use dispersion::{
     bottom_damping, bottom_damping_f32, bulk_damping, bulk_damping_f32, group_speed, group_speed_f32,

@@ -10,6 +10,7 @@ use rain_core::optics::{
 };
 use rain_ecs::prelude::*;
 
+use crate::held::Held;
 use crate::rainfall::{RainView, leading_view};
 
 /// Put on a [`DirectionalLight`], or on a camera with an [`EnvironmentMapLight`] or a [`Skybox`]: the water of the cloud over
@@ -78,30 +79,6 @@ impl CloudLight {
         let light = |depth| cloud_transmittance(depth, CLOUD_ASYMMETRY);
         let kept = light(depth) / light(self.depth(0.0));
         1.0 - f64::from(self.strength * self.cover) * (1.0 - kept)
-    }
-}
-
-/// A value of the app's and what has been written in its place.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Held<T> {
-    own: T,
-    written: Option<T>,
-}
-
-impl<T: Copy + PartialEq> Held<T> {
-    /// Writes `of` the app's own value, unless that is there already.
-    fn write(&mut self, value: T, of: impl FnOnce(T) -> T) -> Option<T> {
-        if self.written != Some(value) {
-            self.own = value;
-        }
-        let new = of(self.own);
-        self.written = Some(new);
-        (new != value).then_some(new)
-    }
-
-    /// The app's own value, where that was written over.
-    fn restored(&self, value: T) -> Option<T> {
-        (self.written == Some(value)).then_some(self.own)
     }
 }
 
@@ -177,24 +154,24 @@ fn restore(
     let Ok((mut state, sun, environment, sky)) = lights.get_mut(removed.entity) else {
         return;
     };
-    let held = std::mem::take(&mut *state);
+    let mut held = std::mem::take(&mut *state);
     if let Some(mut sun) = sun {
         let linear = sun.color.to_linear();
         let colour = Vec3::new(linear.red, linear.green, linear.blue);
-        if let Some(own) = held.illuminance.restored(sun.illuminance) {
+        if let Some(own) = held.illuminance.take_back(sun.illuminance) {
             sun.illuminance = own;
         }
-        if let Some(own) = held.colour.restored(colour) {
+        if let Some(own) = held.colour.take_back(colour) {
             sun.color = Color::linear_rgb(own.x, own.y, own.z);
         }
     }
     if let Some(mut environment) = environment
-        && let Some(own) = held.environment.restored(environment.intensity)
+        && let Some(own) = held.environment.take_back(environment.intensity)
     {
         environment.intensity = own;
     }
     if let Some(mut sky) = sky
-        && let Some(own) = held.sky.restored(sky.brightness)
+        && let Some(own) = held.sky.take_back(sky.brightness)
     {
         sky.brightness = own;
     }

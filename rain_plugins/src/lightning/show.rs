@@ -14,6 +14,7 @@ use rain_ecs::prelude::*;
 
 use super::settings::LightningLook;
 use super::shapes;
+use crate::held::Held;
 use crate::rainfall::{RainView, leading_view};
 use crate::render_adapter::LightningMaterial;
 use crate::surface::{KeepDry, MovesInRain};
@@ -52,39 +53,14 @@ struct Slot {
     is_seen: bool,
 }
 
-/// A value of the app's that a flash adds to.
-#[derive(Debug, Clone, Copy, Default)]
-struct Added {
-    base: f32,
-    written: Option<f32>,
-}
-
-impl Added {
-    /// What to write in place of the app's own value.
-    fn with(&mut self, own: f32, more: f32) -> f32 {
-        let sum = own + more;
-        (self.base, self.written) = (own, Some(sum));
-        sum
-    }
-
-    /// The app's own value: what it was, unless the app has written another since.
-    fn taken_back(&mut self, now: f32) -> f32 {
-        if self.written.take() == Some(now) {
-            self.base
-        } else {
-            now
-        }
-    }
-}
-
 /// What is in the world for flashes.
 #[derive(Resource, Default, Debug)]
 pub(super) struct Shown {
     light: Option<Entity>,
     glow_mesh: Option<Handle<Mesh>>,
     slots: Vec<Slot>,
-    ambient: Added,
-    skies: Vec<(Entity, Added)>,
+    ambient: Held<f32>,
+    skies: Vec<(Entity, Held<f32>)>,
     /// The last frame showed something.
     lit: bool,
     good: LightningLook,
@@ -158,15 +134,16 @@ pub(super) fn take_back(
     ambient: Option<ResMut<GlobalAmbientLight>>,
     mut skies: Query<&mut Skybox>,
 ) {
-    if let Some(mut ambient) = ambient {
-        let own = shown.ambient.taken_back(ambient.brightness);
-        if own != ambient.brightness {
-            ambient.brightness = own;
-        }
+    if let Some(mut ambient) = ambient
+        && let Some(own) = shown.ambient.take_back(ambient.brightness)
+    {
+        ambient.brightness = own;
     }
-    for (entity, mut added) in shown.skies.drain(..) {
-        if let Ok(mut sky) = skies.get_mut(entity) {
-            sky.brightness = added.taken_back(sky.brightness);
+    for (entity, mut held) in shown.skies.drain(..) {
+        if let Ok(mut sky) = skies.get_mut(entity)
+            && let Some(own) = held.take_back(sky.brightness)
+        {
+            sky.brightness = own;
         }
     }
 }
@@ -248,13 +225,17 @@ fn light_scene(
 ) {
     let mean = ambient_lux / PI;
     if mean > 0.0 {
-        if let Some(ambient) = &mut lit.ambient {
-            ambient.brightness = shown.ambient.with(ambient.brightness, mean);
+        if let Some(ambient) = &mut lit.ambient
+            && let Some(sum) = shown.ambient.write(ambient.brightness, |own| own + mean)
+        {
+            ambient.brightness = sum;
         }
         for (entity, mut sky) in &mut lit.skies {
-            let mut added = Added::default();
-            sky.brightness = added.with(sky.brightness, SKY_SHARE * mean);
-            shown.skies.push((entity, added));
+            let mut held = Held::default();
+            if let Some(sum) = held.write(sky.brightness, |own| own + SKY_SHARE * mean) {
+                sky.brightness = sum;
+            }
+            shown.skies.push((entity, held));
         }
     }
     let pose = Transform::default().looking_to(-towards.normalize_or(Vec3::Y), Vec3::X);
@@ -416,27 +397,5 @@ fn new_slot(commands: &mut Commands, materials: &mut Assets<LightningMaterial>) 
         materials,
         width_m: WIDTH_M,
         is_seen: false,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_added_is_taken_away_again_and_the_apps_own_changes_stay() {
-        let mut added = Added::default();
-        let mut value = added.with(10.0, 5.0);
-        assert_eq!(value, 15.0);
-        value = added.taken_back(value);
-        assert_eq!(value, 10.0);
-        assert_eq!(added.taken_back(15.0), 15.0, "taken back once");
-        value = added.with(value, 2.0);
-        assert_eq!(value, 12.0);
-        // The app sets another value amid the flash.
-        assert_eq!(added.taken_back(40.0), 40.0);
-        value = added.with(40.0, 3.0);
-        assert_eq!(value, 43.0);
-        assert_eq!(added.taken_back(value), 40.0);
     }
 }

@@ -24,7 +24,7 @@ use crate::surface::{
     GroundFilms, GroundMap, MapHandover, MapPlace, MirrorFrame, SurfaceState, WaterAppearance, WaterImages,
     WaterLevels, WaveNormalMaps, wind_slope_variance,
 };
-use crate::waves::{Handover, PuddleWaves, RainRings};
+use crate::waves::{Handover, PuddleWaves, RainRings, ThrownLight};
 
 /// One camera that sees rain.
 #[derive(Component, Clone)]
@@ -94,6 +94,7 @@ pub(super) struct ExtractedWaterImages {
     pub reflection: AssetId<Image>,
     pub ripples: AssetId<Image>,
     pub waves: AssetId<Image>,
+    pub caustics: Option<AssetId<Image>>,
 }
 
 /// Rings and waves: this frame's work and where the tiles lie.
@@ -106,6 +107,8 @@ pub(super) struct ExtractedWaves {
     pub ripple_side_m: f64,
     /// Corner and side of the wave tile. Units: m.
     pub wave_tile_m: Option<(DVec2, f64)>,
+    /// What water throws onto walls.
+    pub thrown: ThrownLight,
     /// Set when the device was lost, and with it all that waved.
     pub lost: bool,
 }
@@ -129,6 +132,15 @@ pub(super) fn extract_waves(
         } else {
             std::mem::swap(&mut rings.handover, &mut extracted.ripples);
             extracted.ripple_side_m = if rings.is_off() { 0.0 } else { rings.side_m() };
+        }
+    }
+    if let Some(mut thrown) = main.get_resource_mut::<ThrownLight>() {
+        let thrown = thrown.bypass_change_detection();
+        if lost {
+            thrown.lose();
+            extracted.thrown = ThrownLight::default();
+        } else {
+            extracted.thrown = *thrown;
         }
     }
     if let Some(mut waves) = main.get_resource_mut::<PuddleWaves>() {
@@ -263,6 +275,7 @@ pub(super) fn extract_rain(
                 reflection: i.reflection.id(),
                 ripples: i.ripples.id(),
                 waves: i.waves.id(),
+                caustics: i.caustics.as_ref().map(Handle::id),
             }),
             levels: levels
                 .as_ref()

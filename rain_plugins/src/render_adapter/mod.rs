@@ -47,6 +47,8 @@ use bevy::render::renderer::RenderGraph;
 use bevy::render::sync_component::SyncComponent;
 use bevy::render::{ExtractSchedule, GpuResourceAppExt, Render, RenderSystems};
 
+use rain_core::waves::CAUSTIC_TEXELS;
+use rain_render::caustics::CAUSTIC_FORMAT;
 use rain_render::masks::KNOWN_FORMAT;
 use rain_render::reflection::REFLECTION_FORMAT;
 use rain_render::water_map::WaterMapSettings;
@@ -177,6 +179,14 @@ pub(crate) fn slope_image(texels: u32) -> Image {
         address_mode_v: ImageAddressMode::Repeat,
         ..ImageSamplerDescriptor::linear()
     });
+    image
+}
+
+/// Light that water throws.
+pub(crate) fn caustic_image() -> Image {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;
+    let mut image = gpu_image("rain caustics", CAUSTIC_TEXELS, CAUSTIC_TEXELS, CAUSTIC_FORMAT, usage);
+    image.sampler = slope_image(1).sampler;
     image
 }
 

@@ -13,6 +13,7 @@ use bevy::render::storage::GpuShaderBuffer;
 use bevy::render::sync_world::MainEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa};
+use rain_render::caustics::CausticsGpu;
 use rain_render::compose;
 use rain_render::cover::{CoverPlacement, open_sky};
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams, WaterMapPlaces};
@@ -50,6 +51,8 @@ pub(super) struct RainGpu {
     pub waves: WavesGpu,
     pub ripple_tile: Option<WaveTileGpu>,
     pub wave_tile: Option<WaveTileGpu>,
+    /// Light that water throws; made when it first does.
+    pub caustics: Option<CausticsGpu>,
     pub ring_layers: RingLayersGpu,
     pub ring_layer_tile: Option<RingLayerGpu>,
     pub map_passes: WaterMapPasses,
@@ -90,6 +93,7 @@ impl FromWorld for RainGpu {
             waves: WavesGpu::new(device),
             ripple_tile: None,
             wave_tile: None,
+            caustics: None,
             ring_layers: RingLayersGpu::new(device),
             ring_layer_tile: None,
             map_passes: WaterMapPasses::new(device),
@@ -174,6 +178,15 @@ fn prepare_waves(
         }
         let tile = slot.get_or_insert_with(|| WaveTileGpu::new(device, &gpu.waves, &gpu.slope_mips, &image.texture));
         tile.prepare(device, queue, &gpu.waves, &work.frame);
+    }
+    let thrown = waves.thrown.frame.filter(|_| waves.thrown.wanted);
+    if let (Some(frame), Some(slopes), Some(map)) = (
+        thrown,
+        images.get(ids.ripples),
+        ids.caustics.and_then(|id| images.get(id)),
+    ) {
+        let caustics = gpu.caustics.get_or_insert_with(|| CausticsGpu::new(device));
+        caustics.prepare(device, queue, &slopes.texture, &map.texture, &frame);
     }
 }
 
@@ -288,7 +301,9 @@ fn surface_params(
             look[..3].copy_from_slice(&[map.per_m as f32, place.x, place.y]);
         }
     }
+    let thrown = waves.thrown.frame.map(|frame| frame.towards.extend(waves.thrown.gain));
     SurfaceParams {
+        caustics: thrown.unwrap_or_default().to_array(),
         eye: eye.extend(surface.time_s).to_array(),
         state: surface.state.to_array(),
         artist: surface.artist.to_array(),
@@ -465,9 +480,11 @@ pub(super) fn prepare_rain(
         slot.prepare(device, &queue, &gpu.rainfall, &input, textures);
     }
     let water = scene.surface.as_ref().and_then(|s| s.images);
-    let water = water
-        .iter()
-        .flat_map(|i| [i.levels, i.films, i.map, i.ripples, i.waves, i.reflection]);
+    let water = water.iter().flat_map(|i| {
+        [i.levels, i.films, i.map, i.ripples, i.waves, i.reflection]
+            .into_iter()
+            .chain(i.caustics)
+    });
     let textures = water.chain(cover.map(|c| c.image)).filter_map(|id| images.get(id));
     let tiles = [&gpu.ripple_tile, &gpu.wave_tile].into_iter().flatten();
     report.gpu_memory(
@@ -477,6 +494,10 @@ pub(super) fn prepare_rain(
                 .ring_layer_tile
                 .as_ref()
                 .map_or(0, |tile| tile.memory_bytes() as usize)
+            + gpu
+                .caustics
+                .as_ref()
+                .map_or(0, |caustics| caustics.memory_bytes() as usize)
             + gpu.water_map.as_ref().map_or(0, |map| map.memory_bytes() as usize)
             + gpu.views.values().map(RainfallViewGpu::memory_bytes).sum::<usize>()
             + splashes.memory_bytes()

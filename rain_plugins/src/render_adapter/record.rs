@@ -96,6 +96,20 @@ pub(super) fn water(gpu: Res<RainGpu>, waves: Res<ExtractedWaves>, report: Res<R
         drop(pass);
         report.recorded(pass_name);
     }
+    if let Some(caustics) = gpu.caustics.as_ref().filter(|_| waves.thrown.wanted) {
+        caustics.clear(ctx.command_encoder());
+        let recorder = ctx.diagnostic_recorder();
+        let recorder = recorder.as_deref();
+        let mut pass = ctx.command_encoder().begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("rain_caustics"),
+            timestamp_writes: None,
+        });
+        let span = recorder.pass_span(&mut pass, "rain_caustics");
+        caustics.encode(&mut pass);
+        span.end(&mut pass);
+        drop(pass);
+        report.recorded(PassName::Caustics);
+    }
 }
 
 /// Copies a mirrored view into its layer of the texture that wet materials read.

@@ -80,6 +80,9 @@ pub struct WetSurface {
     /// Flow map of the mesh, where there is one.
     #[texture(116)]
     pub flow_map: Option<Handle<Image>>,
+    /// Light that water throws, once it does.
+    #[texture(117)]
+    pub caustics: Option<Handle<Image>>,
 }
 
 impl MaterialExtension for WetSurface {
@@ -118,6 +121,7 @@ impl Plugin for WetMaterialPlugin {
                 "rut_lanes",
                 "placed_water",
                 "film_waves",
+                "caustics",
                 "beads",
                 "artist_look",
                 "ground_memory",

@@ -464,6 +464,9 @@ pub struct RainSettings {
     /// Gain on the light of rainbows, which a sun behind the eye makes in the haze. Units: none. Domain: [0, 100]; 1 is
     /// physical, 0 none. Default: 0.
     pub rainbow: f64,
+    /// Gain on the light that the camera's bloom spreads because it rains, where `environment.bloom` is on. Units: none. Domain:
+    /// [0, 100]; 0 leaves the bloom alone. Default: 0.
+    pub bloom: f64,
     /// Whether rain beyond the single drops is drawn, as cards of many. Default: on a GPU, not on a software adapter.
     pub cards: Option<bool>,
     /// Whether showers seen from outside are drawn as particles over their haze. Default: on a GPU, not on a software adapter.
@@ -511,6 +514,7 @@ impl Default for RainSettings {
             cloud_base_m: 1000.0,
             glow: 1.0,
             rainbow: 0.0,
+            bloom: 0.0,
             cards: None,
             far_rain: None,
             near_patterns: None,
@@ -547,6 +551,8 @@ pub struct WaterSettings {
     pub reflection_strength: f32,
     /// Share of the light that standing water mirrors.
     pub puddle_reflection: f32,
+    /// Multiple of the sunlight that puddles throw onto walls.
+    pub caustics: f32,
     /// Whether wheels make waves in puddles. Default: true.
     pub simulation: bool,
 }
@@ -566,6 +572,7 @@ impl Default for WaterSettings {
             flow_strength: look.flow_strength,
             reflection_strength: look.reflection_strength,
             puddle_reflection: look.puddle_reflection,
+            caustics: look.caustics,
             simulation: true,
         }
     }
@@ -587,6 +594,7 @@ impl WaterSettings {
             flow_strength: self.flow_strength,
             reflection_strength: self.reflection_strength,
             puddle_reflection: self.puddle_reflection,
+            caustics: self.caustics,
         }
     }
 }

@@ -61,6 +61,7 @@ Scenario(
         wave_slope: 0.0625,
         wave_velocity_m_s: (0.25, -0.5),
         puddle_reflection: 0.875,
+        caustics: 1.5,
         simulation: false,
     ),
     vehicles: [
@@ -132,8 +133,13 @@ fn a_full_scenario_is_read() {
     assert_eq!((lightning.flashes_per_km2_min, lightning.centre_m.x), (0.0625, 100.0));
     let look = s.water.appearance();
     assert_eq!(
-        (look.wave_strength, look.wave_slope, look.puddle_reflection),
-        (0.5, Some(0.0625), 0.875)
+        (
+            look.wave_strength,
+            look.wave_slope,
+            look.puddle_reflection,
+            look.caustics
+        ),
+        (0.5, Some(0.0625), 0.875, 1.5)
     );
     assert_eq!(look.wave_velocity_m_s, Some(bevy::math::Vec2::new(0.25, -0.5)));
     assert!(!s.water.simulation && look.ripple_strength == 1.0);
@@ -303,6 +309,7 @@ fn values_out_of_domain_name_the_field() {
             "water.puddle_reflection",
             "0 to 1",
         ),
+        ("caustics: 1.5", "caustics: 11", "water.caustics", "0 to 10"),
         ("(0.9, 0.95, 1.1)", "(0, 0, 0)", "environment.sky.tint", "not all 0"),
         ("(0.2, -1, 0)", "(0, 0, 0)", "environment.sun.direction", "not zero"),
         (

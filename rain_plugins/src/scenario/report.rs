@@ -6,11 +6,12 @@ use std::fmt::Write;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// Names of passes, in the order of a frame.
-pub const PASS_NAMES: [&str; 15] = [
+pub const PASS_NAMES: [&str; 16] = [
     "cover",
     "surface",
     "ripples",
     "waves",
+    "caustics",
     "streak_textures",
     "reflection",
     "lattice",

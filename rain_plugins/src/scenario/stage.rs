@@ -28,6 +28,7 @@ use super::run::RunError;
 use super::sky::{Cube, Handedness, SPECULAR_PX, SkyModel, generate, prefilter};
 use crate::haze::{HazeSettings, HazeSky};
 use crate::lens::{LensDrops, WindscreenWipers};
+use crate::rain_bloom::RainBloom;
 use crate::rainbow::Rainbow;
 use crate::rainfall::RainView;
 use crate::render_adapter::{MaskKind, RainMasks, mask_image};
@@ -329,6 +330,12 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
         if scenario.rain.rainbow > 0.0 {
             camera.insert(Rainbow {
                 strength: scenario.rain.rainbow as f32,
+                ..default()
+            });
+        }
+        if scenario.rain.bloom > 0.0 {
+            camera.insert(RainBloom {
+                gain: scenario.rain.bloom as f32,
                 ..default()
             });
         }

@@ -233,6 +233,7 @@ fn create_images(mut commands: Commands, mut images: ResMut<Assets<Image>>, map:
         waves: images.add(slope_image(256)),
         // Of no size before a view asks for a mirror.
         reflection: images.add(reflection_image(UVec2::ONE, 1)),
+        caustics: None,
     });
 }
 
@@ -358,6 +359,7 @@ fn wet_meshes(
                     ripples: water.ripples.clone(),
                     waves: water.waves.clone(),
                     reflection: water.reflection.clone(),
+                    caustics: water.caustics.clone(),
                     painted,
                     wave_normals,
                     more_wave_normals,

@@ -36,6 +36,10 @@ pub struct WaterAppearance {
     /// Share of the light that standing water mirrors of all that it would, sky, lamps and scene: 1 is Fresnel's.
     /// Domain: [0, 1]. Default: 1.
     pub puddle_reflection: f32,
+    /// Multiple of the light of the strongest directional light that puddles throw onto walls and ceilings of forward
+    /// materials, broken up by the rain's rings: 1 is Fresnel's; 0: none, and no pass. What stands between the water and the
+    /// wall takes nothing away. Domain: [0, 10]. Default: 0.
+    pub caustics: f32,
 }
 
 impl Default for WaterAppearance {
@@ -52,6 +56,7 @@ impl Default for WaterAppearance {
             flow_strength: 1.0,
             reflection_strength: 1.0,
             puddle_reflection: 1.0,
+            caustics: 0.0,
         }
     }
 }
@@ -79,6 +84,7 @@ impl WaterAppearance {
             ("flow_strength", self.flow_strength, 0.0, 4.0, "0 to 4"),
             ("reflection_strength", self.reflection_strength, 0.0, 1.0, "0 to 1"),
             ("puddle_reflection", self.puddle_reflection, 0.0, 1.0, "0 to 1"),
+            ("caustics", self.caustics, 0.0, 10.0, "0 to 10"),
         ] {
             in_range(name, f64::from(value), low, high, allowed)?;
         }
@@ -323,6 +329,8 @@ pub struct WaterImages {
     pub waves: Handle<Image>,
     /// The mirrored views (Rgba16Float), a layer each.
     pub reflection: Handle<Image>,
+    /// Light that water throws (Rgba16Float), tiling the world as the rings do; from when it is first thrown.
+    pub caustics: Option<Handle<Image>>,
 }
 
 #[cfg(test)]
@@ -332,7 +340,7 @@ mod tests {
     #[test]
     fn each_setting_is_checked_and_named() {
         type Set = fn(&mut WaterAppearance, f32);
-        let fields: [(&str, Set, [f32; 2]); 10] = [
+        let fields: [(&str, Set, [f32; 2]); 11] = [
             ("absorption_per_m", |w, v| w.absorption_per_m.y = v, [-0.1, 2e4]),
             ("mud_albedo", |w, v| w.mud_albedo.z = v, [-0.1, 1.1]),
             ("turbidity_per_m", |w, v| w.turbidity_per_m = v, [-1.0, 2e4]),
@@ -347,6 +355,7 @@ mod tests {
             ("reflection_strength", |w, v| w.reflection_strength = v, [-0.1, 1.1]),
             ("wave_slope", |w, v| w.wave_slope = Some(v), [-0.1, 0.6]),
             ("puddle_reflection", |w, v| w.puddle_reflection = v, [-0.1, 1.1]),
+            ("caustics", |w, v| w.caustics = v, [-0.1, 10.1]),
         ];
         assert!(WaterAppearance::default().validated().is_ok());
         for (name, set, [low, high]) in fields {

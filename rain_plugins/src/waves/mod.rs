@@ -7,11 +7,13 @@
 //!
 //! | file | concept |
 //! |---|---|
+//! | `caustics.rs` | [`ThrownLight`]: sunlight that puddles throw onto walls |
 //! | `disturb.rs` | [`WaterDisturber`]: what moves the water; [`WaterContact`]: the water that it stands in |
 //! | `rings.rs` | the tile of rings, and where they come from |
 //! | `snapshot.rs` | the waves in a snapshot |
 //! | `tile.rs` | the tile of puddles |
 
+mod caustics;
 mod disturb;
 mod rings;
 mod snapshot;
@@ -23,6 +25,7 @@ use rain_ecs::splash::{FootSplash, FootSystems};
 use rain_render::ring_layers::RingLayerFrame;
 use rain_render::waves::{RippleSettings, RippleTile, WaveFrame, WaveTile, WaveTileSettings};
 
+pub use caustics::ThrownLight;
 pub use disturb::{WaterContact, WaterDisturber};
 pub use rain_core::waves::{CircleSettings, RingGrowth, RingIntensity, RingLayerSettings};
 pub use rings::{RainRings, RingSource};
@@ -76,13 +79,14 @@ impl Plugin for WavesPlugin {
             .register_type::<WaveWaterSettings>()
             .add_message::<FootSplash>()
             .init_resource::<WaveWaterSettings>()
+            .init_resource::<ThrownLight>()
             .snapshot_part::<snapshot::WavesPart>(snapshot::PART)
             .add_systems(Startup, create_tiles)
             .add_systems(
                 PostUpdate,
                 (
                     create_tiles.run_if(resource_changed::<WaveWaterSettings>),
-                    (rings::choose_rings, rings::rain_on_water)
+                    (rings::choose_rings, rings::rain_on_water, caustics::throw_light)
                         .chain()
                         .run_if(resource_exists::<RainRings>),
                     tile::move_water

@@ -2,6 +2,7 @@
 
 mod artist_look;
 mod beads;
+mod caustics;
 mod cover_parity;
 mod device;
 mod far;

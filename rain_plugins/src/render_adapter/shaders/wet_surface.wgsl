@@ -16,6 +16,7 @@
     rain_film_texel, rain_memory_of, rain_memory_share, rain_puddle_rim, rain_water_map,
     rain_across_and_along, rain_rut_height, rain_film_wave_velocity, rain_film_wave_slope, rain_film_wavelets,
     rain_beads,
+    rain_caustic_at, rain_water_fresnel,
     ArtistLook, rain_artist_surface, rain_lagarde_porosity, rain_fixed_state, RAIN_MASK_EXPOSURE, rain_mask_texel,
 }
 #ifdef PREPASS_PIPELINE
@@ -28,6 +29,10 @@
     forward_io::{VertexOutput, FragmentOutput},
     pbr_functions::{apply_pbr_lighting, main_pass_post_lighting_processing},
     lighting,
+    mesh_view_bindings::lights,
+    mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT,
+    shadows::fetch_directional_shadow,
+    view_transformations::position_world_to_view,
 }
 #endif
 
@@ -68,6 +73,7 @@ struct Wetting {
 @group(#{MATERIAL_BIND_GROUP}) @binding(114) var rain_wave_normals: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(115) var rain_more_wave_normals: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(116) var rain_flow_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(117) var rain_caustic_map: texture_2d<f32>;
 
 // Perceptual roughness of still water: a mirror, as far as lamps of finite size let it be one.
 const WATER_ROUGHNESS: f32 = 0.045;
@@ -416,12 +422,75 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     out.color = apply_pbr_lighting(pbr);
     let reflected = lighting::F_AB(pbr.material.perceptual_roughness, max(dot(pbr.N, to_eye), 1e-4));
     out.color += vec4<f32>(mirrored.xyz * mirrored.w * shine * (0.02 * reflected.x + reflected.y), 0.0);
+    if (rain_surface.caustics.w > 0.0) {
+        let thrown = thrown_light(p, face, wide, in.position.xy);
+        out.color += vec4<f32>(body * (1.0 - pbr.material.metallic) * 0.3183099 * thrown, 0.0);
+    }
     out.color = main_pass_post_lighting_processing(pbr, out.color);
     return out;
 #endif
 }
 
 #ifndef PREPASS_PIPELINE
+// Exposed light that a puddle throws onto a face at `p`; `wide`: width of the pixel on it, m.
+fn thrown_light(p: vec3<f32>, face: vec3<f32>, wide: f32, pixel: vec2<f32>) -> vec3<f32> {
+    let towards = rain_surface.caustics.xyz;
+    // Against the mirrored ray.
+    let back = vec3<f32>(towards.x, -towards.y, towards.z);
+    let facing = dot(face, back);
+    if (facing <= 0.0) {
+        return vec3<f32>(0.0);
+    }
+    // Where the ray left the ground: level enough that its height is soon found.
+    let levels = rain_surface.levels;
+    var at = p.xz + 0.4 * face.xz;
+    var ground = -1e9;
+    for (var i = 0; i < 3; i++) {
+        let texel = rain_film_texel(rain_film_map, rain_sampler, levels, vec3<f32>(at.x, p.y, at.y));
+        if (texel.w <= 0.0) {
+            return vec3<f32>(0.0);
+        }
+        ground = levels.base + texel.z;
+        at = p.xz + towards.xz * (max(p.y - ground, 0.0) / towards.y);
+    }
+    let depth = rain_standing_water(rain_level_map, levels, vec3<f32>(at.x, ground, at.y));
+    let way = (p.y - ground - depth) / towards.y;
+    if (depth <= 0.0 || way <= 0.0) {
+        return vec3<f32>(0.0);
+    }
+    let water = vec3<f32>(p.x + towards.x * way, ground + depth, p.z + towards.z * way);
+    let place = water + rain_surface.eye.xyz;
+    // What is not the brightest light is thrown too weakly to be seen.
+    var sun = vec3<f32>(0.0);
+    for (var i = 0u; i < lights.n_directional_lights; i++) {
+        let light = &lights.directional_lights[i];
+        if (dot((*light).direction_to_light, towards) < 0.99999) {
+            continue;
+        }
+        sun = (*light).color.rgb * view.exposure;
+        if (((*light).flags & DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u) {
+            let from_view = position_world_to_view(place);
+            sun *= fetch_directional_shadow(i, vec4<f32>(place, 1.0), vec3<f32>(0.0, 1.0, 0.0), from_view.z, pixel);
+        }
+        break;
+    }
+    if (all(sun <= vec3<f32>(0.0))) {
+        return vec3<f32>(0.0);
+    }
+    var lines = 1.0;
+    let ripples = rain_surface.water.ripples;
+    // Rings too fine for the pixel leave even light.
+    let shown = smoothstep(0.001, 0.006, depth) * (1.0 - smoothstep(0.01, 0.05, wide));
+    if (ripples.w > 0.5 && shown > 0.0) {
+        let uv = water.xz * ripples.x + ripples.yz;
+        let values = textureSampleLevel(rain_caustic_map, rain_sampler, uv, 0.0);
+        let open = rain_exposure(rain_cover_map, rain_surface.cover, water + vec3<f32>(0.0, 0.03, 0.0), 0.03);
+        lines = mix(1.0, rain_caustic_at(values, way), shown * open);
+    }
+    let mirrored = rain_water_fresnel(towards.y) * rain_surface.water.more_map.w * rain_puddle_rim(depth);
+    return rain_surface.caustics.w * mirrored * facing * lines * sun;
+}
+
 // Exposed radiance of this view's mirror image that the surface at `p` shows, and how much of its mirror image that is.
 fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughness: f32, film: f32) -> vec4<f32> {
     // The mirror of this view's eye.
