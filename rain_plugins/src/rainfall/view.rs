@@ -104,7 +104,7 @@ impl RainView {
         in_range(
             "exposure_s",
             f64::from(self.exposure_s),
-            0.0001,
+            f64::from(1e-4_f32),
             0.25,
             "0.0001 to 0.25 s",
         )?;
