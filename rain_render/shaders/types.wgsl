@@ -70,7 +70,7 @@ struct RainfallView {
     sun_direction: vec4<f32>,
     // Illuminance of the sun, exposed; w unused.
     sun: vec4<f32>,
-    // How far the container reaches ahead of the eye, m; w unused.
+    // How far the container reaches ahead of the eye, m; w: height of the eye, m.
     lead: vec4<f32>,
     // A drop's size over its own by distance d: x + y d + z d2; w: d for a metre.
     size: vec4<f32>,
@@ -91,7 +91,8 @@ struct RainfallView {
     drops: u32,
     lamps: u32,
     panes: u32,
-    pad_c: u32,
+    // 1: near streaks have a pattern.
+    patterned: u32,
     cover: CoverParams,
     classes: array<RainfallClass, 12>,
     lamp: array<LampParams, 16>,

@@ -35,6 +35,8 @@ pub const LIBRARIES: &[Library] = library![
     "streak",
     "far_rain",
     "drop_light",
+    "drop_body",
+    "near_streak",
     "lamp_light",
     "surroundings",
     "glass",
@@ -83,6 +85,7 @@ macro_rules! passes {
 pub const PASSES: &[Pass] = passes![
     "rainfall_project",
     "rainfall_draw",
+    "rainfall_near",
     "mask",
     "slope_mips",
     "reflection_mips",
@@ -100,11 +103,17 @@ pub const PASSES: &[Pass] = passes![
     "lens"
 ];
 
-/// Functions over a binding that some passes share, and those passes.
-const AREA_ROWS: (&str, &[&str]) = (
-    include_str!("../shaders/shared/area_rows.wgsl"),
-    &["water_map", "haze_areas"],
-);
+/// Functions over bindings that some passes share, and those passes.
+const SHARED: [(&str, &[&str]); 2] = [
+    (
+        include_str!("../shaders/shared/area_rows.wgsl"),
+        &["water_map", "haze_areas"],
+    ),
+    (
+        include_str!("../shaders/shared/streak_quads.wgsl"),
+        &["rainfall_draw", "rainfall_near"],
+    ),
+];
 
 /// What covers from more than this above a drop is taken for a building with walls, not for an open roof. Chosen:
 /// shelters, awnings and canopies of filling stations are lower. Units: m.
@@ -198,9 +207,8 @@ pub fn module(pass: &str) -> String {
     for library in LIBRARIES {
         out.push_str(library.source);
     }
-    let (rows, readers) = AREA_ROWS;
-    if readers.contains(&pass.name) {
-        out.push_str(rows);
+    for (source, _) in SHARED.iter().filter(|(_, readers)| readers.contains(&pass.name)) {
+        out.push_str(source);
     }
     out.push_str(pass.source);
     out

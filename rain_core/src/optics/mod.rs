@@ -21,6 +21,7 @@ mod drop_body;
 mod drop_radiance;
 mod energy;
 mod fresnel;
+mod near_streak;
 mod rainbow;
 mod refraction;
 
@@ -33,6 +34,10 @@ pub use energy::{EnergySplit, energy_split, retro_reflection, sphere_order_share
 pub use fresnel::{
     Polarised, brewster_rad, critical_angle_rad, fresnel, fresnel_f32, fresnel_from_inside, fresnel_polarised,
     hemispherical_mean, hemispherical_mean_inside, normal_reflectance, schlick, schlick_f32,
+};
+pub use near_streak::{
+    StreakAngles, WATER_INDEX, drop_glint, light_lobe, outline_heights, outline_radius, streak_pattern, swing_at,
+    swinging_body, time_inside,
 };
 pub use rainbow::{
     BOW_KNOTS, BOW_SPAN_DEG, BOW_STEP_DEG, BowRays, RainbowPhase, RainbowTables, bow_place, water_index,

@@ -44,7 +44,7 @@ pub struct RainView {
     /// Gain on streak contrast alone: 1 is physical, 1…32. Default: 4, by eye: physical streaks are 1–3 % opaque and
     /// vanish in a game's picture; above 8 rain looks drawn.
     pub contrast: f32,
-    /// Shutter time. Units: s. Domain: [0.0005, 0.25]. Default: 1/60. Longer: longer and fainter streaks.
+    /// Shutter time. Units: s. Domain: [0.0001, 0.25]. Default: 1/60. Longer: longer and fainter streaks.
     pub exposure_s: f32,
     /// Distance over which streaks fade where they meet the scene (needs `DepthPrepass` and `Msaa::Off`). Units: m. Default: 0.15.
     pub soft_m: f32,
@@ -64,6 +64,11 @@ pub struct RainView {
     /// many is set by [`HazeSettings::far_rain`](crate::haze::HazeSettings::far_rain), and without haze there are none. `None`: on
     /// a GPU, not on a software adapter.
     pub far_rain: Option<bool>,
+    /// Streaks that are wider than a pixel and a half show what their drops do: the surroundings refracted upside down, glints
+    /// of the sun and of the strongest lamp, and how they swing; wholly from four pixels on. The others stay as they are.
+    /// `Some(false)`: all streaks are even strips. `None`: on a GPU, not on a software adapter, where a picture full of wide
+    /// streaks takes ten times as long.
+    pub near_patterns: Option<bool>,
 }
 
 impl Default for RainView {
@@ -78,6 +83,7 @@ impl Default for RainView {
             detail: None,
             cards: None,
             far_rain: None,
+            near_patterns: None,
         }
     }
 }
@@ -98,9 +104,9 @@ impl RainView {
         in_range(
             "exposure_s",
             f64::from(self.exposure_s),
-            0.0005,
+            f64::from(1e-4_f32),
             0.25,
-            "0.0005 to 0.25 s",
+            "0.0001 to 0.25 s",
         )?;
         in_range("soft_m", f64::from(self.soft_m), 0.0, 10.0, "0 to 10 m")?;
         let budget = self.streak_budget.unwrap_or_default();
@@ -130,6 +136,11 @@ impl RainView {
     /// Whether cards are drawn.
     pub(super) fn draws_cards(&self, software: SoftwareAdapter) -> bool {
         self.cards.unwrap_or(!software.0)
+    }
+
+    /// Whether near streaks have patterns.
+    fn draws_patterns(&self, software: SoftwareAdapter) -> bool {
+        self.near_patterns.unwrap_or(!software.0)
     }
 
     /// Whether far rain is drawn.
@@ -333,6 +344,7 @@ pub(crate) fn fill_containers(
             contrast: settings.contrast,
             kappa: kappa as f32,
             soft_m: settings.soft_m,
+            patterned: settings.draws_patterns(*software),
             detail: settings.detail,
         });
     }

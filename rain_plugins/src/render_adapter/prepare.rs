@@ -455,6 +455,7 @@ pub(super) fn prepare_rain(
             seed: rain.seed,
             clip_from_eye: view.clip_from_view * now,
             clip_from_eye_before: view.clip_from_view * before,
+            eye_height_m: eye.y,
             eye_velocity_m_s: rain.motion.velocity_m_s.as_vec3(),
             viewport_px: size,
             focal_px: rain.focal_px,

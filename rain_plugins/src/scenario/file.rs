@@ -445,7 +445,7 @@ pub struct RainSettings {
     pub streak_budget: u32,
     /// Gain on streak contrast, α′ = 1 − (1 − α)^contrast. Units: none. Domain: [1, 32]; 1 is physical. Default: 4.
     pub contrast: f64,
-    /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0005, 0.25].
+    /// Exposure time that streaks are drawn for, whatever the frame rate. Units: s. Domain: [0.0001, 0.25].
     /// Default: 1/60.
     pub exposure_s: f64,
     /// Whose rules wet surfaces look by: `Physical`, `Lagarde`, `LagardePorous`, `Nguyenova`. Default: `Physical`.
@@ -471,6 +471,8 @@ pub struct RainSettings {
     pub cards: Option<bool>,
     /// Whether showers seen from outside are drawn as particles over their haze. Default: on a GPU, not on a software adapter.
     pub far_rain: Option<bool>,
+    /// Whether near streaks show what their drops do. Default: on a GPU, not on a software adapter.
+    pub near_patterns: Option<bool>,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -515,6 +517,7 @@ impl Default for RainSettings {
             bloom: 0.0,
             cards: None,
             far_rain: None,
+            near_patterns: None,
             lens: Lens::Off,
             look: WetLook::Physical,
         }

@@ -314,6 +314,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             exposure_s: scenario.rain.exposure_s as f32,
             cards: scenario.rain.cards,
             far_rain: scenario.rain.far_rain,
+            near_patterns: scenario.rain.near_patterns,
             ..default()
         });
         camera.insert(HazeSettings {

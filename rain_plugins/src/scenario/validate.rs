@@ -174,7 +174,7 @@ impl Scenario {
         number("rain.bloom", self.rain.bloom, 0.0, 100.0, "")?;
         number("rain.cloud_base_m", self.rain.cloud_base_m, -1e5, 1e5, "m")?;
         number("rain.contrast", self.rain.contrast, 1.0, 32.0, "")?;
-        number("rain.exposure_s", self.rain.exposure_s, 5e-4, 0.25, "s")?;
+        number("rain.exposure_s", self.rain.exposure_s, 1e-4, 0.25, "s")?;
         if let Err(ConfigError::OutOfRange { field, value, allowed }) = self.water.appearance().validated() {
             return problem(format!("water.{field}"), value, allowed);
         }

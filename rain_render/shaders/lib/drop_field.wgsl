@@ -5,7 +5,7 @@ fn rain_cell_key(stream: vec3<u32>, cell: vec3<i32>) -> vec3<u32> {
     return rain_pcg3d(stream ^ bitcast<vec3<u32>>(cell));
 }
 
-// Hash of drop `index`: rank increment, diameter, unused.
+// Hash of drop `index`: rank increment, diameter, phase of its swing.
 fn rain_drop_marks(key: vec3<u32>, index: u32) -> vec3<u32> {
     return rain_pcg3d(vec3<u32>(key.x ^ (index * 0x9E3779B9u), key.y + index, key.z));
 }
@@ -35,4 +35,29 @@ fn rain_terminal_velocity(diameter_mm: f32) -> f32 {
     p = p * t - 1.586889;
     p = p * t + 2.689075;
     return d * p;
+}
+
+// A drop of a view's records.
+struct FieldDrop {
+    // Relative to the eye, m.
+    place: vec3<f32>,
+    diameter: f32,
+    // In [0, 1), its own.
+    chance: f32,
+}
+
+// The drop that a record of class `k` names; `diameter` in mm. Error: 1e-5 m.
+fn rain_field_drop(record: DropRecord, k: RainfallClass) -> FieldDrop {
+    let index = (record.drop >> 4u) & 0xFFFu;
+    let relative = vec3<i32>(
+        i32(record.cell & 1023u),
+        i32((record.cell >> 10u) & 1023u),
+        i32((record.cell >> 20u) & 1023u),
+    ) - 512;
+    let key = rain_cell_key(k.stream.xyz, k.cell.xyz + relative);
+    let place = rain_drop_place(key, index);
+    let marks = rain_drop_marks(key, index);
+    let diameter_mm = rain_diameter_mm(k.diameter.x, k.diameter.y, rain_unit(marks.y));
+    let p = (vec3<f32>(relative) - k.fraction.xyz + place) * k.fraction.w;
+    return FieldDrop(p, diameter_mm, rain_unit(marks.z));
 }

@@ -19,6 +19,11 @@ fn rain_to_segment(p: vec3<f32>, lead: vec3<f32>) -> f32 {
     return length(p - lead * t);
 }
 
+// Where a place is in the picture, px from the upper left corner. Error: 0.01 px.
+fn rain_pixel(clip: vec4<f32>, viewport: vec2<f32>) -> vec2<f32> {
+    return (clip.xy / clip.w * vec2<f32>(0.5, -0.5) + 0.5) * viewport;
+}
+
 // Contrast gain on an opacity; 1 is physical. Error: 2e-6.
 fn rain_contrast(opacity: f32, gain: f32) -> f32 {
     return 1.0 - pow(max(1.0 - min(opacity, 1.0), 0.0), gain);

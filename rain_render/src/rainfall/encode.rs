@@ -45,11 +45,19 @@ pub fn encode_coverage(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &Ra
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, key: OverlayKey) {
-    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key)) else {
+    if let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key)) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, bind_group, &[]);
+        // One big vertex-pulling draw: tiny instances waste most of a SIMD batch.
+        pass.draw(0..6 * view.drops, 0..1);
+    }
+    if view.near_drops.is_empty() {
         return;
-    };
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, bind_group, &[]);
-    // One big vertex-pulling draw: tiny instances waste most of a SIMD batch.
-    pass.draw(0..6 * view.drops, 0..1);
+    }
+    // Streaks with a pattern, by a pipeline of their own: its fragments would slow all others down.
+    if let (Some(bind_group), Some(pipeline)) = (&view.near, gpu.near.get(key)) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, bind_group, &[]);
+        pass.draw(0..6 * view.near_drops.len() as u32, 0..1);
+    }
 }

@@ -1,4 +1,4 @@
-//! Near rain: one screen-space quad a drop.
+//! Near rain: one screen-space quad a drop; those of the nearest drops have a pattern.
 //!
 //! Inputs: the container's drop records and class placements, the view, the cover map, an environment cube map.
 //! Output: premultiplied streaks over the view's colour target, depth-tested, and on demand a coverage mask.
@@ -6,6 +6,7 @@
 //! Skipped by the host when nothing falls or no rain reaches the view volume.
 
 mod encode;
+mod near;
 mod params;
 mod prepare;
 

@@ -34,6 +34,9 @@ pub struct Shutter {
     pub kappa: f32,
     /// Fade against the scene over this distance, m; 0 = hard depth test.
     pub soft_m: f32,
+    /// Near streaks have the pattern that their drops draw, and frozen drops show their surroundings; otherwise all are
+    /// even.
+    pub patterned: bool,
     /// The law that the container was thinned by; its drops are drawn larger by it.
     pub detail: Option<DetailLaw>,
 }
@@ -49,6 +52,8 @@ pub struct RainfallInput<'a> {
     pub clip_from_eye: Mat4,
     /// The same at the start of the exposure, from positions relative to the *present* eye.
     pub clip_from_eye_before: Mat4,
+    /// Height of the eye, which drops' swings are in phase with. Units: m.
+    pub eye_height_m: f32,
     /// Velocity of the eye. Units: m/s.
     pub eye_velocity_m_s: Vec3,
     /// Size of the target. Units: px.
@@ -99,7 +104,7 @@ impl RainfallInput<'_> {
             ambient: self.lighting.ambient.extend(0.0).to_array(),
             sun_direction: self.lighting.sun_direction.extend(0.0).to_array(),
             sun: self.lighting.sun.extend(0.0).to_array(),
-            lead: lead.extend(0.0).to_array(),
+            lead: lead.extend(self.eye_height_m).to_array(),
             size: size.map_or([1.0, 0.0, 0.0, 0.0], |[even, linear, square]| {
                 [even, linear, square, 1.0 / RANGE_CAP_M as f32]
             }),
@@ -113,7 +118,7 @@ impl RainfallInput<'_> {
             drops: self.container.records.len() as u32,
             lamps,
             panes,
-            pad_c: 0,
+            patterned: u32::from(self.shutter.patterned),
             cover: self.cover,
             classes,
             lamp,

@@ -7,6 +7,7 @@ use crate::compose;
 use crate::gpu_types::{RainfallView, Streak};
 use crate::overlay::Overlay;
 use crate::rainfall::RainfallInput;
+use crate::rainfall::near::near_drops;
 
 /// Format of the coverage mask: blendable everywhere.
 pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
@@ -20,6 +21,7 @@ pub struct RainfallGpu {
     pub(super) project_layout: wgpu::BindGroupLayout,
     pub(super) project: wgpu::ComputePipeline,
     pub(super) draw: Overlay,
+    pub(super) near: Overlay,
     no_depth: wgpu::TextureView,
     no_environment: wgpu::TextureView,
     sampler: wgpu::Sampler,
@@ -45,8 +47,12 @@ pub struct RainfallViewGpu {
     capacity: usize,
     pub(super) drops: u32,
     pub(super) panes: u32,
+    /// Which records may have a streak with a pattern, and as many words for them.
+    pub(super) near_drops: Vec<u32>,
+    near_list: wgpu::Buffer,
     pub(super) project: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
+    pub(super) near: Option<wgpu::BindGroup>,
 }
 
 impl RainfallGpu {
@@ -74,20 +80,37 @@ impl RainfallGpu {
         let module = compose::shader(device, "rainfall_project");
         let project = compute_pipeline(device, "rain rainfall project", &module, "project", &[&project_layout]);
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let draw = Overlay::new(
+        let even = [
+            uniform_entry(0, raster, size_of::<RainfallView>()),
+            storage_entry(1, raster, true),
+            texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
+        ];
+        let draw = Overlay::new(device, "rain rainfall draw", "rainfall_draw", &even);
+        let [view, streaks, scene] = even;
+        let near = Overlay::new(
             device,
-            "rain rainfall draw",
-            "rainfall_draw",
+            "rain rainfall near",
+            "rainfall_near",
             &[
-                uniform_entry(0, raster, size_of::<RainfallView>()),
-                storage_entry(1, wgpu::ShaderStages::VERTEX, true),
-                texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
+                view,
+                streaks,
+                scene,
+                storage_entry(3, wgpu::ShaderStages::FRAGMENT, true),
+                texture_entry(
+                    4,
+                    wgpu::ShaderStages::FRAGMENT,
+                    wgpu::TextureSampleType::Float { filterable: true },
+                    wgpu::TextureViewDimension::Cube,
+                ),
+                sampler_entry(5, wgpu::ShaderStages::FRAGMENT),
+                storage_entry(6, wgpu::ShaderStages::VERTEX, true),
             ],
         );
         Self {
             project_layout,
             project,
             draw,
+            near,
             no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
             sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
@@ -104,7 +127,9 @@ impl RainfallGpu {
         coverage: bool,
         behind: bool,
     ) {
-        self.draw.prepare_all(device, format, samples, coverage, behind);
+        for overlay in [&mut self.draw, &mut self.near] {
+            overlay.prepare_all(device, format, samples, coverage, behind);
+        }
     }
 }
 
@@ -113,6 +138,7 @@ impl RainfallViewGpu {
     #[must_use]
     pub fn new(device: &wgpu::Device) -> Self {
         let (records, streaks) = Self::buffers(device, 1024);
+        let near_list = Self::list(device, 64);
         Self {
             uniform: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("rain rainfall view"),
@@ -125,9 +151,21 @@ impl RainfallViewGpu {
             capacity: 1024,
             drops: 0,
             panes: 0,
+            near_drops: Vec::new(),
+            near_list,
             project: None,
             draw: None,
+            near: None,
         }
+    }
+
+    fn list(device: &wgpu::Device, words: usize) -> wgpu::Buffer {
+        device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("rain near drops"),
+            size: 4 * words as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
     }
 
     fn buffers(device: &wgpu::Device, capacity: usize) -> (wgpu::Buffer, wgpu::Buffer) {
@@ -162,11 +200,18 @@ impl RainfallViewGpu {
         self.drops = records.len() as u32;
         let uniform = input.uniform();
         self.panes = uniform.panes;
+        near_drops(input, &mut self.near_drops);
         if records.len() > self.capacity {
             self.capacity = records.len().next_power_of_two();
             (self.records, self.streaks) = Self::buffers(device, self.capacity);
         }
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        if 4 * self.near_drops.len() as u64 > self.near_list.size() {
+            self.near_list = Self::list(device, self.near_drops.len().next_power_of_two());
+        }
+        if !self.near_drops.is_empty() {
+            queue.write_buffer(&self.near_list, 0, bytemuck::cast_slice(&self.near_drops));
+        }
         if !records.is_empty() {
             queue.write_buffer(&self.records, 0, bytemuck::cast_slice(records));
         }
@@ -188,13 +233,28 @@ impl RainfallViewGpu {
                 entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
             ],
         }));
+        let even = [
+            entry(0, self.uniform.as_entire_binding()),
+            entry(1, self.streaks.as_entire_binding()),
+            entry(2, wgpu::BindingResource::TextureView(&scene)),
+        ];
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain rainfall draw"),
             layout: &gpu.draw.layout,
+            entries: &even,
+        }));
+        let [uniform, streaks, depth] = even;
+        self.near = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain rainfall near"),
+            layout: &gpu.near.layout,
             entries: &[
-                entry(0, self.uniform.as_entire_binding()),
-                entry(1, self.streaks.as_entire_binding()),
-                entry(2, wgpu::BindingResource::TextureView(&scene)),
+                uniform,
+                streaks,
+                depth,
+                entry(3, self.records.as_entire_binding()),
+                entry(4, wgpu::BindingResource::TextureView(&environment)),
+                entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
+                entry(6, self.near_list.as_entire_binding()),
             ],
         }));
     }
@@ -214,7 +274,7 @@ impl RainfallViewGpu {
     /// GPU memory of this view. Units: bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<RainfallView>() + self.capacity * (8 + size_of::<Streak>())
+        size_of::<RainfallView>() + self.capacity * (8 + size_of::<Streak>()) + self.near_list.size() as usize
     }
 
     /// The projected streaks, for reading back.

@@ -93,15 +93,16 @@ impl FieldView {
         container
     }
 
-    /// The streaks that the GPU makes of them, at contrast 1 under an open sky.
-    pub fn streaks(&self, gpu: &Device, pipelines: &RainfallGpu, seed: u64, container: &Container) -> Vec<Streak> {
+    /// What the nodes are given of them: contrast 1, even light under an open sky.
+    pub fn input<'a>(&'a self, seed: u64, container: &'a Container) -> RainfallInput<'a> {
         let now = self.clip_from_eye();
         let shift = self.eye_velocity_m_s.as_vec3() * self.exposure_s;
-        let input = RainfallInput {
+        RainfallInput {
             container,
             seed,
             clip_from_eye: now,
             clip_from_eye_before: now * Mat4::from_translation(shift),
+            eye_height_m: self.eye_m.y as f32,
             eye_velocity_m_s: self.eye_velocity_m_s.as_vec3(),
             viewport_px: self.size,
             focal_px: self.focal_px(),
@@ -111,6 +112,7 @@ impl FieldView {
                 contrast: 1.0,
                 kappa: self.kappa as f32,
                 soft_m: 0.0,
+                patterned: false,
                 detail: self.detail,
             },
             lighting: Lighting {
@@ -123,7 +125,12 @@ impl FieldView {
             lamps: &self.lamps,
             panes: &self.panes,
             cover: open_sky(),
-        };
+        }
+    }
+
+    /// The streaks that the GPU makes of them.
+    pub fn streaks(&self, gpu: &Device, pipelines: &RainfallGpu, seed: u64, container: &Container) -> Vec<Streak> {
+        let input = self.input(seed, container);
         let mut view = RainfallViewGpu::new(&gpu.device);
         view.prepare(&gpu.device, &gpu.queue, pipelines, &input, RainfallTextures::default());
         let mut encoder = gpu

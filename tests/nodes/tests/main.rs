@@ -15,6 +15,8 @@ mod haze;
 mod lattice;
 mod lens;
 mod maps;
+mod near_streak;
+mod near_streak_parity;
 mod optical_depth;
 mod rain_areas;
 mod reflection;

@@ -20,6 +20,7 @@ mod lightning;
 mod looks;
 mod materials;
 mod mirrors;
+mod near_streaks;
 mod painted;
 mod placed_puddles;
 mod pond;

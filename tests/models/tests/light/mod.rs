@@ -5,6 +5,7 @@ mod drop;
 mod formulas;
 mod fresnel;
 mod haze;
+mod near_streak;
 mod rainbow;
 mod sharing;
 mod sphere;
