@@ -23,5 +23,7 @@ pub const STANDARD_TEMPERATURE_C: f64 = 20.0;
 pub const WATER_SURFACE_TENSION: f64 = 0.0728;
 /// Dynamic viscosity of water at 20 °C. Units: Pa s. Source: Pruppacher & Klett 1997.
 pub const WATER_VISCOSITY: f64 = 1.002e-3;
+/// Von Kármán's constant κ of turbulent boundary layers. Units: none. Source: Stull 1988.
+pub const VON_KARMAN: f64 = 0.4;
 /// Kinematic viscosity of water at 20 °C. Units: m²/s. Source: Pruppacher & Klett 1997.
 pub const WATER_KINEMATIC_VISCOSITY: f64 = 1.004e-6;

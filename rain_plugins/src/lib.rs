@@ -112,7 +112,9 @@ impl Plugin for RainSchedulePlugin {
 pub mod prelude {
     pub use crate::cloud_light::{CloudLight, CloudLightPlugin};
     pub use crate::cover::CoverSettings;
-    pub use crate::haze::{AreaFog, ArtistFog, FarRainSettings, HazeMask, HazePlugin, HazeSettings, HazeSky, Mist};
+    pub use crate::haze::{
+        AreaFog, ArtistFog, FarRainSettings, HazeMask, HazePlugin, HazeSettings, HazeSky, Mist, SplashMist,
+    };
     pub use crate::lens::{LensDrops, LensGlass, WindscreenWipers};
     pub use crate::lightning::{LightningLight, LightningLook};
     pub use crate::rain_bloom::{RainBloom, RainBloomPlugin};

@@ -611,9 +611,8 @@ struct HazeLamp {
 struct HazeView {
     eye_from_clip: mat4x4<f32>,
     clip_from_eye: mat4x4<f32>,
-    // Scale of the environment map; w: its highest level.
+    // Scale of the environment map, w: its highest level; even light around, exposed.
     environment: vec4<f32>,
-    // Even light around, exposed.
     ambient: vec4<f32>,
     // w: how much of the haze is the artists' fog.
     sun_direction: vec4<f32>,
@@ -629,16 +628,14 @@ struct HazeView {
     viewport: vec4<f32>,
     // The artists' fog: colour, times the luminance around; w: how much of its colour it has lost.
     fog: vec4<f32>,
-    // Extinction of the rain at the eye, or everywhere, 1/m.
+    // Extinction of the rain at the eye, or everywhere, 1/m, and over cross-section, Q.
     extinction: f32,
-    // Extinction over cross-section, Q.
     efficiency: f32,
     // Base of the cloud over the eye, and the longest way, m.
     cloud: f32,
     limit: f32,
-    // The artists' fog, 1/m.
+    // The artists' fog, 1/m, and how much of it has a colour of its own.
     artist: f32,
-    // How much of the artists' fog has a colour of its own.
     coloured: f32,
     // 1: areas divide the rain.
     uneven: f32,
@@ -648,6 +645,9 @@ struct HazeView {
     // Far rain, which is drawn as particles: its share of what may be; extinction of the rain outside areas, 1/m. z: how far
     // below the cloud's base rain thins out, m.
     far: vec4<f32>,
+    // Mist of splashes: extinction at its foot, 1/m, and height, m, of what is thrown, of what wind carries; what rain hits.
+    splash: vec4<f32>,
+    cover: CoverParams,
     // Metres of rain that what is drawn stands for, by distance.
     drawn: array<vec4<f32>, 16>,
     // ln of the extinction, 1/m, by rate.

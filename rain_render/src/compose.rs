@@ -41,6 +41,7 @@ pub const LIBRARIES: &[Library] = library![
     "surroundings",
     "glass",
     "haze",
+    "splash_mist",
     "rainbow",
     "wetness",
     "standing_water",

@@ -504,6 +504,8 @@ pub struct HazeView {
     pub lamps: u32,
     pub grid: [f32; 4],
     pub far: [f32; 4],
+    pub splash: [f32; 4],
+    pub cover: CoverParams,
     pub drawn: [[f32; 4]; 16],
     pub rates: [[f32; 4]; 16],
     pub lamp: [HazeLamp; 16],
@@ -601,6 +603,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(SplashDraw: vertices, instances, first_vertex, first_instance, found, noted),
         layout!(HazeLamp: place, light, axis),
         layout!(HazeView: eye_from_clip, clip_from_eye, environment, ambient, sun_direction, sun, forward,
-            depth_row, air, viewport, fog, extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, far, drawn, rates, lamp),
+            depth_row, air, viewport, fog, extinction, efficiency, cloud, limit, artist, coloured, uneven, lamps, grid, far, splash,
+            cover, drawn, rates, lamp),
     ]
 }

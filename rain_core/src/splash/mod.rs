@@ -16,6 +16,7 @@
 //! | `field.rs` | what is drawn: impacts by class in cells and slots |
 //! | `budget.rs` | how many of each class |
 //! | `flight.rs` | the way of drops thrown out |
+//! | `mist.rs` | the finest drops thrown out, as layers of extinction |
 //! | `artist.rs` | the sources' own tables of splash rates |
 //! | `foot.rs` | splashes of feet |
 //!
@@ -32,6 +33,7 @@ mod field;
 mod flight;
 mod foot;
 mod impacts;
+mod mist;
 mod numbers;
 mod secondary;
 mod threshold;
@@ -45,6 +47,10 @@ pub use events::{ImpactEvent, for_each_impact, hashed_poisson};
 pub use field::{SPLASH_CELL_M, SPLASH_COUNTS, SPLASH_SLOT_S, SPLASH_SLOTS, SplashAnchor, SplashField, SplashMark};
 pub use foot::{FOOT_DROPS, FOOT_SPLASH_S, foot_drop, foot_drop_count, foot_sheet, foot_splash_strength};
 pub use impacts::{ImpactFlux, splashes_per_m2_s};
+pub use mist::{
+    MIST_SIZE, MistFlight, MistGround, MistLayer, MistLayers, friction_velocity_m_s, mist_droplets, rouse_number,
+    secondary_drop_number,
+};
 pub use numbers::{ImpactNumbers, impact_energy_j, impact_momentum_kg_m_s, splash_k, splash_k_f32, water_drop_kg};
 pub use secondary::{Impact, SecondaryDrop, Splash, SplashKind, secondary_drop};
 pub use threshold::{splash_excess, splash_excess_f32, splash_threshold_diameter_mm, splash_threshold_k};

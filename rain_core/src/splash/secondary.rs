@@ -151,6 +151,19 @@ impl Splash {
     }
 }
 
+/// Mean number of drops that are thrown singly at an excess over the threshold above 1.
+pub(super) fn mean_count(excess: f64) -> f64 {
+    let [least, most] = [COUNTS.0, COUNTS.1].map(f64::from);
+    least + (most - least) * ((excess - 1.0) / (f64::from(FULL_EXCESS) - 1.0)).min(1.0)
+}
+
+/// Upward speed of the smallest of them on level ground, in the mean of speeds and angles, at an impact's speed. Units: m/s.
+pub(super) fn mist_rise(speed_m_s: f64) -> f64 {
+    let [slow, fast] = [SPEEDS.0, SPEEDS.1].map(f64::from);
+    let angle = 0.5 * f64::from(ANGLES.0 + ANGLES.1);
+    speed_m_s * (slow + 0.75 * (fast - slow)) * ops::sin(angle)
+}
+
 /// Hash of one secondary drop.
 fn drop_key(key: [u32; 3], index: u32) -> [u32; 3] {
     hash::pcg3d([key[0] ^ hash::pcg(index), key[1], key[2].wrapping_add(index)])

@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::haze::{DRY_EXTINCTION_PER_M, HYGROSCOPICITY};
 use rain_core::rainfall::FarRainSettings;
+use rain_core::splash::MistGround;
 use rain_render::haze::MAX_HAZE_LAMPS;
 
 /// Longest accepted way through the rain. Units: m.
@@ -40,6 +41,35 @@ pub struct HazeSettings {
     /// Haze of the air itself, which grows into mist and fog with the weather's humidity, with or without rain. Default:
     /// none.
     pub mist: Option<Mist>,
+    /// Mist that splashes throw up over what rain hits, and that strong wind carries up. Default: none.
+    pub splash_mist: Option<SplashMist>,
+}
+
+/// The finest drops of splashes (`rain_core::splash::MistLayers`): a white fringe a hand's breadth high over ground, roofs and
+/// whatever else rain hits, seen at a flat angle and over edges; above some 10 m/s of wind a spray to the height of the eye.
+/// Needs [`CoverPlugin`](crate::cover::CoverPlugin): without its map what rain hits is not known, and there is none.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default)]
+pub struct SplashMist {
+    /// Gain on its extinction. Units: none. Domain: [0, 100]. Default: 1, the model's, which is sure to a factor of a few.
+    pub gain: f32,
+    /// Roughness length of the ground about the view. Units: m. Domain: [10⁻⁴, 2]. Default: 0.03, short grass or a wide
+    /// road; a town has 1.
+    pub roughness_m: f32,
+    /// Length of ground in the rain upwind: mist is carried the higher the longer it is, 5.5 m by default. Units: m. Domain:
+    /// [1, 10⁴]. Default: 200.
+    pub fetch_m: f32,
+}
+
+impl Default for SplashMist {
+    fn default() -> Self {
+        let ground = MistGround::default();
+        Self {
+            gain: 1.0,
+            roughness_m: ground.roughness_m as f32,
+            fetch_m: ground.fetch_m as f32,
+        }
+    }
 }
 
 /// Particles in the air that take up water (Petters & Kreidenweis 2007): haze in dry air, mist near saturation, fog at it.
@@ -114,6 +144,7 @@ impl Default for HazeSettings {
             artist: None,
             far_rain: FarRainSettings::default(),
             mist: None,
+            splash_mist: None,
         }
     }
 }
@@ -138,6 +169,12 @@ impl HazeSettings {
         if let Some(mist) = self.mist {
             in_range("dry_per_m", mist.dry_per_m.into(), 0.0, 1.0, "0 to 1 per m")?;
             in_range("hygroscopicity", mist.hygroscopicity.into(), 0.0, 2.0, "0 to 2")?;
+        }
+        if let Some(mist) = self.splash_mist {
+            in_range("gain", mist.gain.into(), 0.0, 100.0, "0 to 100")?;
+            // Single precision rounds the least down.
+            in_range("roughness_m", mist.roughness_m.into(), 0.999e-4, 2.0, "1e-4 to 2 m")?;
+            in_range("fetch_m", mist.fetch_m.into(), 1.0, 1e4, "1 to 1e4 m")?;
         }
         Ok(self)
     }

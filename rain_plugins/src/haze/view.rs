@@ -11,6 +11,7 @@ use rain_core::haze::{
 use rain_core::optics::RainbowPhase;
 use rain_core::rainfall::areas::{AreaField, AreaFieldF32};
 use rain_core::rainfall::{DrawRange, FarEye, FarRainSettings, FarRainView, Lamp, Spectrum};
+use rain_core::splash::MistLayers;
 use rain_core::weather::relative_intensity;
 use rain_ecs::prelude::*;
 use rain_render::haze::{HazeFar, HazeFog};
@@ -20,6 +21,7 @@ use super::far_rain::{FarRainViewFrame, half_view_rad};
 use super::lamps::glowing;
 use super::mirror::haze_mirrors;
 use super::settings::{HazeSettings, HazeSky};
+use super::splash_mist::KnownMist;
 use crate::cover::AirAroundView;
 use crate::rainfall::{
     CardViewFrame, RainView, RainViewFrame, SceneLamps, SoftwareAdapter, ViewMotion, fill_cards, view_volume,
@@ -27,6 +29,7 @@ use crate::rainfall::{
 use crate::render_adapter::let_depth_be_read;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
+use crate::surface::SurfaceState;
 
 /// Less optical depth than this on the longest way is not seen: a quarter of an 8-bit step.
 const NEGLIGIBLE_DEPTH: f64 = 1.0 / 1024.0;
@@ -62,6 +65,7 @@ pub(crate) struct HazeShot {
     /// Of a mirrored view: the mirror over its eye.
     pub mirror_m: Option<f32>,
     pub bow: Option<BowShot>,
+    pub splash: Option<MistLayers>,
 }
 
 /// A view's rainbow.
@@ -101,6 +105,7 @@ pub struct HazeViewFrame {
     /// Kept as long as they hold.
     table: Option<(Source, [f32; FOG_TABLE_KNOTS])>,
     rates: Option<(rain_core::rainfall::Distribution, f32, Arc<RateExtinction>)>,
+    splash_mist: KnownMist,
     settings: HazeSettings,
     fade: FogFade,
     before_s: f64,
@@ -193,6 +198,7 @@ pub(crate) fn aim_haze(
     mut errors: MessageWriter<RainConfigError>,
     mut fogs: AreaFogs,
     humidity: Humidity,
+    surface: Option<Res<SurfaceState>>,
     lights: SceneLamps,
     mut views: Query<(
         (Entity, &RainView, Ref<HazeSettings>, Option<&CardViewFrame>),
@@ -352,6 +358,13 @@ pub(crate) fn aim_haze(
                 None
             }
         };
+        let film_mm = surface.as_ref().map_or(0.0, |surface| f64::from(surface.state.y));
+        let splash = settings.splash_mist.and_then(|mist| {
+            let rate = here.intensity_mm_h;
+            frame
+                .splash_mist
+                .layers(&mist, &field, rate, film_mm, settings.efficiency)
+        });
         frame.shot = Some(HazeShot {
             forward: transform.forward().into(),
             extinction_per_m: extinction_per_m(&here, q) as f32,
@@ -372,6 +385,7 @@ pub(crate) fn aim_haze(
             mist_per_m: mist as f32,
             mirror_m: None,
             bow: None,
+            splash,
         });
     }
     if !any {

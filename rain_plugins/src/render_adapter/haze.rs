@@ -16,7 +16,7 @@ use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_core::rainfall::Lamp;
 use rain_render::haze::{
-    HazeAreas, HazeBow, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    HazeAreas, HazeBow, HazeGpu, HazeInput, HazeSplash, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
     encode_haze_coverage,
 };
 
@@ -113,6 +113,8 @@ pub(super) fn prepare_haze(
     let Some(scene) = scene else { return };
     let hazes = &mut *hazes;
     let device = device.wgpu_device();
+    let cover = scene.cover.as_ref();
+    let cover_image = cover.and_then(|c| images.get(c.image));
     hazes.views.retain(|entity, _| views.contains(*entity));
     for (entity, view, camera, haze, depth, msaa) in &views {
         let Some(shot) = &haze.shot else { continue };
@@ -164,11 +166,23 @@ pub(super) fn prepare_haze(
                 phase: &bow.phase,
                 strength: bow.strength,
             }),
+            splash: shot.splash.and_then(|layers| {
+                // Without a map what rain hits is not known.
+                let placement = cover.and_then(|c| c.placement).filter(|_| cover_image.is_some())?;
+                let eye = view.world_from_view.translation().as_dvec3();
+                Some(HazeSplash {
+                    mist: layers,
+                    cover: placement.params(eye),
+                })
+            }),
             lamps: &lamps,
         };
         let textures = HazeTextures {
             scene_depth: depth.view(),
             environment: environment.map(|(i, _)| -> &wgpu::TextureView { &i.texture_view }),
+            cover: cover_image
+                .filter(|_| shot.splash.is_some())
+                .map(|i| -> &wgpu::TextureView { &i.texture_view }),
         };
         let slot = hazes.views.entry(entity).or_insert_with(|| HazeViewGpu::new(device));
         slot.prepare(device, &queue, &hazes.gpu, &input, textures, samples);

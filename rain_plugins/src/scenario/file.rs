@@ -464,6 +464,9 @@ pub struct RainSettings {
     /// Gain on the light of rainbows, which a sun behind the eye makes in the haze. Units: none. Domain: [0, 100]; 1 is
     /// physical, 0 none. Default: 0.
     pub rainbow: f64,
+    /// Gain on the mist that splashes throw up and strong wind carries. Units: none. Domain: [0, 100]; 1 is the model's, 0
+    /// none. Default: 0.
+    pub splash_mist: f64,
     /// Gain on the light that the camera's bloom spreads because it rains, where `environment.bloom` is on. Units: none. Domain:
     /// [0, 100]; 0 leaves the bloom alone. Default: 0.
     pub bloom: f64,
@@ -514,6 +517,7 @@ impl Default for RainSettings {
             cloud_base_m: 1000.0,
             glow: 1.0,
             rainbow: 0.0,
+            splash_mist: 0.0,
             bloom: 0.0,
             cards: None,
             far_rain: None,

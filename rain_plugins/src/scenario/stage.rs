@@ -26,7 +26,7 @@ use super::path::{CameraPath, VehiclePath, wheel_angle_rad};
 use super::puddles::PartRoot;
 use super::run::RunError;
 use super::sky::{Cube, Handedness, SPECULAR_PX, SkyModel, generate, prefilter};
-use crate::haze::{HazeSettings, HazeSky};
+use crate::haze::{HazeSettings, HazeSky, SplashMist};
 use crate::lens::{LensDrops, WindscreenWipers};
 use crate::rain_bloom::RainBloom;
 use crate::rainbow::Rainbow;
@@ -321,6 +321,10 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             enabled: scenario.rain.haze,
             cloud_base_m: scenario.rain.cloud_base_m as f32,
             glow: scenario.rain.glow as f32,
+            splash_mist: (scenario.rain.splash_mist > 0.0).then(|| SplashMist {
+                gain: scenario.rain.splash_mist as f32,
+                ..default()
+            }),
             ..default()
         });
         camera.insert(HazeSky {

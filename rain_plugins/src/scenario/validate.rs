@@ -171,6 +171,7 @@ impl Scenario {
         }
         number("rain.glow", self.rain.glow, 0.0, 100.0, "")?;
         number("rain.rainbow", self.rain.rainbow, 0.0, 100.0, "")?;
+        number("rain.splash_mist", self.rain.splash_mist, 0.0, 100.0, "")?;
         number("rain.bloom", self.rain.bloom, 0.0, 100.0, "")?;
         number("rain.cloud_base_m", self.rain.cloud_base_m, -1e5, 1e5, "m")?;
         number("rain.contrast", self.rain.contrast, 1.0, 32.0, "")?;

@@ -7,6 +7,8 @@
 @group(0) @binding(4) var environment_sampler: sampler;
 // Light of the rainbow by angle, of that on the drops, 1/sr.
 @group(0) @binding(5) var<uniform> bow: array<vec4<f32>, RAIN_BOW_KNOTS>;
+// What rain hits; read where there is mist of splashes.
+@group(0) @binding(6) var cover_map: texture_depth_2d;
 
 struct HazeVertex {
     @builtin(position) position: vec4<f32>,
@@ -16,6 +18,8 @@ struct HazeVertex {
     @location(2) @interpolate(flat) seen_b: vec4<f32>,
     @location(3) @interpolate(flat) seen_c: vec4<f32>,
     @location(4) @interpolate(flat) seen_d: vec4<f32>,
+    // Height of the ground about the eye, m from it; 1e9: not known.
+    @location(5) @interpolate(flat) floor_height: f32,
 }
 
 // Distance along the unit line `towards` of what has this depth; far where nothing is drawn.
@@ -65,6 +69,10 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> HazeVertex {
     out.seen_b = vec4<f32>(lamp_seen(4u), lamp_seen(5u), lamp_seen(6u), lamp_seen(7u));
     out.seen_c = vec4<f32>(lamp_seen(8u), lamp_seen(9u), lamp_seen(10u), lamp_seen(11u));
     out.seen_d = vec4<f32>(lamp_seen(12u), lamp_seen(13u), lamp_seen(14u), lamp_seen(15u));
+    out.floor_height = 1e9;
+    if (view.splash.z > 0.0) {
+        out.floor_height = rain_mist_floor(cover_map, view.cover, view.splash.w);
+    }
     return out;
 }
 
@@ -221,6 +229,132 @@ fn glow(towards: vec3<f32>, ends: vec2<f32>, in: HazeVertex) -> vec3<f32> {
     return sum;
 }
 
+// Pixels looked at below a pixel for something that mist stands on.
+const HALO_TAPS: u32 = 8u;
+// Mist is looked for up to this height over it, in heights of the layer.
+const HALO_HEIGHT: f32 = 5.0;
+// Nothing nearer has a halo, and none is wider, m and px.
+const HALO_NEAREST_M: f32 = 1.0;
+const HALO_WIDEST_PX: f32 = 96.0;
+
+// Unit line of sight and distance of what is drawn at a pixel of the target.
+fn seen_at(pixel: vec2<f32>, which: u32) -> vec4<f32> {
+    let ndc = ((pixel - view.viewport.xy) / view.viewport.zw - 0.5) * vec2<f32>(2.0, -2.0);
+    let ahead = view.eye_from_clip * vec4<f32>(ndc, 1.0, 1.0);
+    let towards = normalize(ahead.xyz / ahead.w);
+    let depth = textureLoad(scene_depth, vec2<i32>(pixel), i32(which));
+    return vec4<f32>(towards, distance_of(depth, towards));
+}
+
+// How level what is drawn at the end of a line of sight is, by its neighbours above and below: 0 wall to 1 ground.
+fn levelness(pixel: vec2<f32>, which: u32, at: vec3<f32>) -> f32 {
+    var nearest = vec3<f32>(0.0, 1e9, 0.0);
+    for (var i = -1; i <= 1; i += 2) {
+        let row = pixel + vec2<f32>(0.0, f32(i));
+        if (row.y < view.viewport.y || row.y >= view.viewport.y + view.viewport.w) {
+            continue;
+        }
+        let seen = seen_at(row, which);
+        let off = seen.xyz * seen.w - at;
+        if (dot(off, off) < dot(nearest, nearest)) {
+            nearest = off;
+        }
+    }
+    return smoothstep(0.3, 0.8, length(nearest.xz) / max(length(nearest), 1e-6));
+}
+
+// Distance of the nearest thing under a line of sight that is seen less than a few heights of the layer below it, and nearer
+// than `before`; 0: none.
+fn edge_below(pixel: vec2<f32>, which: u32, towards: vec3<f32>, before: f32) -> f32 {
+    // Pixels of a metre up, a metre away.
+    let here = view.clip_from_eye * vec4<f32>(towards, 1.0);
+    let over = view.clip_from_eye * vec4<f32>(towards + vec3<f32>(0.0, 0.01, 0.0), 1.0);
+    let up = (over.xy / over.w - here.xy / here.w) * vec2<f32>(50.0, -50.0) * view.viewport.zw;
+    let scale = length(up);
+    let furthest = min(HALO_HEIGHT * view.splash.y * scale / HALO_NEAREST_M, HALO_WIDEST_PX);
+    if (furthest < 1.0) {
+        return 0.0;
+    }
+    var nearer = 0.0;
+    for (var i = 0u; i < HALO_TAPS; i += 1u) {
+        let off = pow(furthest, f32(i) / f32(HALO_TAPS - 1u));
+        let place = pixel - up / scale * off;
+        if (any(place < view.viewport.xy) || any(place >= view.viewport.xy + view.viewport.zw)) {
+            break;
+        }
+        let distance = seen_at(place, which).w;
+        // The edge lies between the pixel before and this one.
+        if (distance < before - 0.05 && nearer * distance < HALO_HEIGHT * view.splash.y * scale) {
+            return distance;
+        }
+        nearer = off;
+    }
+    return 0.0;
+}
+
+// Light of the lamps that mist of an optical depth at a place sends to the eye.
+fn mist_glow(at: vec3<f32>, towards: vec3<f32>, depth: f32, in: HazeVertex) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    if (depth < 1e-3) {
+        return sum;
+    }
+    var seen = array<vec4<f32>, 4>(in.seen_a, in.seen_b, in.seen_c, in.seen_d);
+    for (var i = 0u; i < view.lamps; i += 1u) {
+        let lamp = view.lamp[i];
+        let way = at - lamp.place.xyz;
+        let squared = max(dot(way, way), max(lamp.place.w * lamp.place.w, 0.01));
+        let ray = way * inverseSqrt(squared);
+        var share = seen[i / 4u][i % 4u];
+        if (lamp.light.w > -0.99) {
+            let inner = max(lamp.axis.w, lamp.light.w + 1e-4);
+            share *= smoothstep(lamp.light.w, inner, dot(ray, lamp.axis.xyz));
+        }
+        let turned = acos(clamp(-dot(ray, towards), -1.0, 1.0));
+        let phase = RAIN_DROP_TRANSMITTED * rain_drop_phase(turned) + RAIN_DROP_REFLECTED * 0.0795775;
+        sum += lamp.light.rgb * (share * phase / squared);
+    }
+    return sum * rain_haze_share(depth) / view.efficiency;
+}
+
+// Mist of splashes on a line of sight: what stands before what is seen, what stands on the edge below and how far away that
+// is, what the wind has carried up.
+fn splash_mist(in: HazeVertex, pixel: vec2<f32>, which: u32, towards: vec3<f32>, way: f32, ends: vec2<f32>) -> vec4<f32> {
+    let thrown = view.splash.x;
+    let height = view.splash.y;
+    var out = vec4<f32>(0.0);
+    if (thrown > 0.0) {
+        // The sky ends no layer.
+        let ground = way < view.limit && ends.y >= way;
+        var free = ends.y;
+        if (ground) {
+            let at = towards * way;
+            let mapped = rain_mist_mapped(view.cover, at);
+            if (mapped > 0.0) {
+                let share = rain_mist_at(cover_map, view.cover, at, height);
+                if (share > RAIN_MIST_LEAST) {
+                    out.x = mapped
+                        * rain_mist_before(cover_map, view.cover, towards, way, height, ends.x, share);
+                    free = max(way - rain_mist_reach(towards.y, height), ends.x);
+                }
+            }
+            if (mapped < 1.0 && towards.y < 0.0) {
+                out.x += (1.0 - mapped) * levelness(pixel, which, at)
+                    * rain_mist_on_level(towards.y, way - ends.x, height);
+            }
+        }
+        let edge = edge_below(pixel, which, towards, free);
+        if (edge > ends.x) {
+            let mapped = rain_mist_mapped(view.cover, towards * edge);
+            out.y = mapped * rain_mist_over(cover_map, view.cover, towards, edge, ends.x, free, height);
+            out.z = edge;
+        }
+    }
+    if (view.splash.z > 0.0 && in.floor_height < 1e8) {
+        out.w = view.splash.z * rain_mist_over_floor(in.floor_height, towards.y, ends.x, ends.y, view.splash.w);
+    }
+    return out * vec4<f32>(thrown, thrown, 1.0, 1.0);
+}
+
 // Light of the rainbow at an angle from the point opposite the sun, of that on the drops, 1/sr. Error: 2e-4 per sr.
 fn rainbow(angle: f32) -> vec3<f32> {
     let place = rain_bow_place(angle);
@@ -243,7 +377,12 @@ fn haze(in: HazeVertex, pixel: vec2<f32>, which: u32) -> Haze {
         // What lies before the mirror is no part of its picture: the view itself has it.
         ends.x = min(max(ends.x, view.air.y / max(towards.y, 1e-6)), ends.y);
     }
-    let through = depths(towards, ends);
+    var through = depths(towards, ends);
+    var mist = vec4<f32>(0.0);
+    if (view.splash.x + view.splash.z > 0.0) {
+        mist = splash_mist(in, pixel, which, towards, way, ends);
+        through.y += mist.x + mist.y + mist.w;
+    }
     var out: Haze;
     // What a drop keeps by inner reflections leaves it all the same: in even light haze shows that light.
     out.light = rain_drop_shine(
@@ -266,6 +405,9 @@ fn haze(in: HazeVertex, pixel: vec2<f32>, which: u32) -> Haze {
         out.obscured = mix(out.obscured, obscured, share);
     }
     out.light = light + glow(towards, ends, in);
+    if (mist.x + mist.y > 0.0) {
+        out.light += mist_glow(towards * way, towards, mist.x, in) + mist_glow(towards * mist.z, towards, mist.y, in);
+    }
     if (view.air.z > 0.0) {
         let rain = max(through.x - view.air.x * (ends.y - ends.x), 0.0) / view.efficiency;
         let light = rainbow(rain_bow_angle(towards, view.sun_direction.xyz)) * rain_bow_share(rain);

@@ -5,9 +5,11 @@ use rain_core::haze::{FOG_TABLE_KNOTS, LEAST_LAMP_M, RATE_KNOTS, RateExtinction}
 use rain_core::optics::{CHEAP_REFLECTED, CHEAP_REFRACTED, RainbowPhase};
 use rain_core::rainfall::Lamp;
 use rain_core::rainfall::areas::AreaFieldF32;
+use rain_core::splash::{MistLayer, MistLayers};
 
 use crate::compose::{HAZE_AZIMUTHS, HAZE_FIRST_M, HAZE_INTERVALS};
-use crate::gpu_types::{HazeLamp, HazeView};
+use crate::cover::open_sky;
+use crate::gpu_types::{CoverParams, HazeLamp, HazeView};
 use crate::rainfall::Lighting;
 
 /// Most lamps that glow in a view.
@@ -44,6 +46,15 @@ pub struct HazeFog {
     pub desaturation: f32,
     /// How much of the rain's haze it takes the place of. Domain: [0, 1].
     pub share: f32,
+}
+
+/// Mist of splashes in the haze.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HazeSplash {
+    /// Its layers.
+    pub mist: MistLayers,
+    /// What rain hits; without it there is no mist.
+    pub cover: CoverParams,
 }
 
 /// A rainbow in the haze.
@@ -93,6 +104,8 @@ pub struct HazeInput<'a> {
     pub mirror_m: Option<f32>,
     /// `None`: no rainbow.
     pub bow: Option<HazeBow<'a>>,
+    /// `None`: no mist of splashes.
+    pub splash: Option<HazeSplash>,
     /// Relative to the eye, intensities exposed; the first [`MAX_HAZE_LAMPS`] glow, no smaller than 5 cm.
     pub lamps: &'a [Lamp],
 }
@@ -143,6 +156,17 @@ impl HazeInput<'_> {
 
     fn fog_share(&self) -> f32 {
         self.fog.map_or(0.0, |fog| fog.share.clamp(0.0, 1.0))
+    }
+
+    /// Extinction and height of both layers of mist.
+    fn splash_layers(&self) -> [f32; 4] {
+        let known = self.splash.filter(|splash| splash.cover.present > 0.5);
+        known.map_or([0.0; 4], |HazeSplash { mist, .. }| {
+            // A layer of no height has no extinction.
+            let of = |layer: MistLayer| [layer.extinction_per_m, layer.height_m.max(1e-3)];
+            let ([a, b], [c, d]) = (of(mist.thrown), of(mist.carried));
+            [a, b, c, d].map(|value| value as f32)
+        })
     }
 
     /// What of the sun's light the haze shows: what drops turn away, not what they diffract; with a rainbow, what they send
@@ -215,6 +239,8 @@ impl HazeInput<'_> {
                 self.thin_m.clamp(0.0, self.cloud_m.max(0.0)),
                 0.0,
             ],
+            splash: self.splash_layers(),
+            cover: self.splash.map_or_else(open_sky, |splash| splash.cover),
             drawn: fours(&self.drawn_m),
             rates: fours(&self.rates.ln_per_m),
             lamp,

@@ -10,6 +10,7 @@ use crate::bindings::{
 use crate::compose::{self, HAZE_AZIMUTHS, HAZE_INTERVALS};
 use crate::gpu_types::HazeView;
 use crate::overlay::{Overlay, OverlayKey};
+use crate::rainfall::DEPTH_FORMAT;
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
@@ -21,6 +22,7 @@ pub struct HazeGpu {
     single: Overlay,
     several: Option<Overlay>,
     no_environment: wgpu::TextureView,
+    no_depth: wgpu::TextureView,
     no_bow: wgpu::Buffer,
     sampler: wgpu::Sampler,
 }
@@ -32,6 +34,8 @@ pub struct HazeTextures<'a> {
     pub scene_depth: &'a wgpu::TextureView,
     /// Prefiltered cube map; `None`: none.
     pub environment: Option<&'a wgpu::TextureView>,
+    /// Depth map along the rain; `None`: none.
+    pub cover: Option<&'a wgpu::TextureView>,
 }
 
 /// Buffers and bind groups of one view.
@@ -88,6 +92,12 @@ fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
         ),
         sampler_entry(4, fragment),
         uniform_entry(5, fragment, BOW_BYTES),
+        texture_entry(
+            6,
+            raster,
+            wgpu::TextureSampleType::Depth,
+            wgpu::TextureViewDimension::D2,
+        ),
     ];
     let shader = if multisampled {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -124,6 +134,7 @@ impl HazeGpu {
             several: None,
             no_bow: bow_buffer(device),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
+            no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
             sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
         }
     }
@@ -232,6 +243,10 @@ impl HazeViewGpu {
                             .as_ref()
                             .map_or(&gpu.no_bow, |(buffer, _)| buffer)
                             .as_entire_binding(),
+                    ),
+                    entry(
+                        6,
+                        wgpu::BindingResource::TextureView(textures.cover.unwrap_or(&gpu.no_depth)),
                     ),
                 ],
             }),

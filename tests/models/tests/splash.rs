@@ -3,6 +3,7 @@
 mod field;
 mod foot;
 mod formulas;
+mod mist;
 mod thrown;
 
 use glam::{DVec3, Vec3};

@@ -5,8 +5,12 @@ use rain_core::haze::{
     FogTable, HazeSharing, LUMA_LINEAR, RateExtinction, cone_span_m, desaturated, extinction_per_m, lamp_glow_per_m,
 };
 use rain_core::rainfall::{CLASS_COUNT, Distribution, Lamp, Spectrum};
+use rain_core::splash::MistLayers;
+use rain_render::cover::open_sky;
+use rain_render::gpu_types::CoverParams;
 use rain_render::haze::{
-    HazeAreas, HazeBow, HazeFar, HazeFog, HazeGpu, HazeInput, HazeTextures, HazeViewGpu, encode_haze, encode_haze_areas,
+    HazeAreas, HazeBow, HazeFar, HazeFog, HazeGpu, HazeInput, HazeSplash, HazeTextures, HazeViewGpu, encode_haze,
+    encode_haze_areas,
 };
 use rain_render::rainfall::{DEPTH_FORMAT, Lighting};
 
@@ -15,6 +19,7 @@ use crate::maps::read_map;
 
 mod air;
 mod areas;
+mod splash_mist;
 
 const SIDE: u32 = 64;
 const NEAR_M: f32 = 0.1;
@@ -40,6 +45,8 @@ struct Shot<'a> {
     fog: Option<HazeFog>,
     mist_per_m: f32,
     bow: Option<HazeBow<'a>>,
+    /// Layers of mist over level ground at this height from the eye, covered at the height of a roof.
+    splash: Option<(MistLayers, f32, Option<f32>)>,
     /// Where it stands, and its illuminance.
     sun: [Vec3; 2],
     lamps: &'a [Lamp],
@@ -65,6 +72,7 @@ impl Default for Shot<'_> {
             fog: None,
             mist_per_m: 0.0,
             bow: None,
+            splash: None,
             sun: [Vec3::Y, Vec3::ZERO],
             lamps: &[],
             ambient: Vec3::ZERO,
@@ -73,6 +81,20 @@ impl Default for Shot<'_> {
             mirror_m: None,
             samples: 1,
         }
+    }
+}
+
+/// Where a map of one depth, a half, lies that covers all at a height from the eye.
+fn level_cover(height_m: f32) -> CoverParams {
+    CoverParams {
+        inverse_extent: 1.0 / 60.0,
+        top: height_m + 10.0,
+        range: 20.0,
+        highest: height_m,
+        plane: height_m,
+        texels: 16.0,
+        present: 1.0,
+        ..open_sky()
     }
 }
 
@@ -155,6 +177,22 @@ impl Shot<'_> {
         };
         let depth =
             texture(DEPTH_FORMAT, self.samples, wgpu::TextureUsages::TEXTURE_BINDING).create_view(&Default::default());
+        // A map whose depth is a half everywhere.
+        let cover = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: 16,
+                height: 16,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: DEPTH_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let cover = cover.create_view(&Default::default());
         let rates = RateExtinction::new(Distribution::MarshallPalmer, 2.0);
         let input = HazeInput {
             clip_from_eye: projection * Mat4::from_quat(self.rotation.inverse()),
@@ -180,6 +218,10 @@ impl Shot<'_> {
             mist_per_m: self.mist_per_m,
             mirror_m: self.mirror_m,
             bow: self.bow,
+            splash: self.splash.map(|(mist, ground, roof)| HazeSplash {
+                mist,
+                cover: level_cover(roof.unwrap_or(ground)),
+            }),
             lamps: self.lamps,
         };
         let mut haze = HazeGpu::new(&gpu.device);
@@ -188,6 +230,7 @@ impl Shot<'_> {
         let textures = HazeTextures {
             scene_depth: &depth,
             environment: None,
+            cover: Some(&cover),
         };
         view.prepare(&gpu.device, &gpu.queue, &haze, &input, textures, self.samples);
         let target = texture(
@@ -204,6 +247,17 @@ impl Shot<'_> {
                 view: &depth,
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(self.wall_m.map_or(0.0, |wall| NEAR_M / wall)),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &cover,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.5),
                     store: wgpu::StoreOp::Store,
                 }),
                 stencil_ops: None,

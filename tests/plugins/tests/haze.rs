@@ -16,10 +16,10 @@ use test_support::app::{FRAME, TestApp};
 use test_support::{gpu, world};
 
 /// Rows of a mask of half floats begin at multiples of 256 bytes: these have no gap.
-const SIZE: [u32; 2] = [128, 64];
+pub(crate) const SIZE: [u32; 2] = [128, 64];
 
 /// An app with haze in its view.
-fn hazy() -> TestApp {
+pub(crate) fn hazy() -> TestApp {
     let mut test = TestApp::new(SIZE, true);
     let camera = test.camera;
     test.world().entity_mut(camera).insert(HazeSettings::default());
@@ -54,7 +54,7 @@ fn half(bits: u16) -> f64 {
 }
 
 /// What a mask holds, row by row.
-fn read(test: &mut TestApp, mask: &Handle<Image>) -> Vec<f64> {
+pub(crate) fn read(test: &mut TestApp, mask: &Handle<Image>) -> Vec<f64> {
     test.app.insert_resource(Read::default());
     let readback = test
         .world()
@@ -75,7 +75,7 @@ fn read(test: &mut TestApp, mask: &Handle<Image>) -> Vec<f64> {
     halves.take((SIZE[0] * SIZE[1]) as usize).collect()
 }
 
-fn with_mask(test: &mut TestApp) -> Handle<Image> {
+pub(crate) fn with_mask(test: &mut TestApp) -> Handle<Image> {
     let image = mask_image(MaskKind::Rain, SIZE[0], SIZE[1]);
     let mask = test.world().resource_mut::<Assets<Image>>().add(image);
     let camera = test.camera;

@@ -32,6 +32,7 @@ mod rewind;
 mod rings;
 mod scenes;
 mod skipping;
+mod splash_mist;
 mod splashes;
 mod steps;
 mod tiles;
