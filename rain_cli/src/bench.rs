@@ -1,10 +1,13 @@
-//! `rain bench models`: error against time of every model's variants, by the workspace's benchmark program.
+//! `rain bench`: error against time of every model's variants, by the workspace's benchmark program, and frames beside
+//! other packages' rain.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Subcommand};
+
+use crate::peers::{self, PeersArgs};
 
 /// Arguments of `rain bench`.
 #[derive(Debug, Args)]
@@ -17,6 +20,9 @@ pub struct BenchArgs {
 enum What {
     /// Error against time of every model's variants: prints tables, writes CSV and PNG files.
     Models(ModelsArgs),
+    /// Frames with our rain beside the same frames with the rain of `bevy_hanabi` and `bevy_weather`, and our streaks beside
+    /// bare quads: prints a table, writes peer-frames.csv.
+    Peers(PeersArgs),
 }
 
 /// Arguments of `rain bench models`.
@@ -36,8 +42,11 @@ struct ModelsArgs {
 /// Runs `rain bench` from the folder `here` or below it; returns the exit code.
 #[must_use]
 pub fn run(args: &BenchArgs, here: &Path) -> ExitCode {
-    let What::Models(models) = &args.what;
-    match start(models, here) {
+    let done = root(here).and_then(|root| match &args.what {
+        What::Models(models) => start(models, root, here),
+        What::Peers(peers) => peers::run(peers, root, here),
+    });
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             let _ = writeln!(std::io::stderr(), "rain: {message}");
@@ -52,13 +61,16 @@ fn workspace(here: &Path) -> Option<&Path> {
         .find(|folder| folder.join("benches/models/Cargo.toml").is_file())
 }
 
-fn start(args: &ModelsArgs, here: &Path) -> Result<(), String> {
-    let root = workspace(here).ok_or_else(|| {
+fn root(here: &Path) -> Result<&Path, String> {
+    workspace(here).ok_or_else(|| {
         format!(
             "rain bench runs in a checkout of its sources; {} lies in none (no benches/models/Cargo.toml above it)",
             here.display()
         )
-    })?;
+    })
+}
+
+fn start(args: &ModelsArgs, root: &Path, here: &Path) -> Result<(), String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(&cargo);
     command

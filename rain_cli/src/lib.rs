@@ -6,6 +6,7 @@
 pub mod bake;
 pub mod bench;
 pub mod model;
+pub mod peers;
 pub mod print;
 pub mod streaks;
 pub mod wet_textures;

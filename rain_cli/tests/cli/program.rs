@@ -438,6 +438,22 @@ fn bench_runs_in_a_checkout_only() {
     let err = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{err}");
     assert!(err.contains("/no/such/cargo does not start"), "{err}");
+    for (words, said) in [
+        (["peers", "--counts", "10000,0"], "0 is not in 1..=1000000"),
+        (["peers", "--rounds", "0"], "0 is not in 1..=1000"),
+        (["peers", "--rounds", "1"], "/no/such/cargo does not start"),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_rain"))
+            .arg("bench")
+            .args(words)
+            .env("CARGO", "/no/such/cargo")
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .output()
+            .expect("the program starts");
+        let err = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{err}");
+        assert!(err.contains(said), "{err}");
+    }
 }
 
 #[test]
