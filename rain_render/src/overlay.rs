@@ -14,6 +14,8 @@ pub(crate) struct OverlayKey {
     coverage: bool,
     /// What lies behind glass instead of what does not.
     behind: bool,
+    /// Fades where it meets the scene; for shaders that are told.
+    soft: bool,
 }
 
 impl OverlayKey {
@@ -24,6 +26,7 @@ impl OverlayKey {
             samples,
             coverage: false,
             behind: false,
+            soft: false,
         }
     }
 
@@ -34,12 +37,18 @@ impl OverlayKey {
             samples,
             coverage: true,
             behind: false,
+            soft: false,
         }
     }
 
     /// The same for what lies behind glass.
     pub fn behind(self) -> Self {
         Self { behind: true, ..self }
+    }
+
+    /// The same, fading where it meets the scene.
+    pub fn soft(self, soft: bool) -> Self {
+        Self { soft, ..self }
     }
 }
 
@@ -53,6 +62,8 @@ pub(crate) struct Overlay {
     shader: wgpu::ShaderModule,
     /// Tested against the scene's depth, which is attached.
     tested: bool,
+    /// The shader is told by its constants `SOFT` and `COVERAGE` what it draws.
+    told: bool,
     made: HashMap<OverlayKey, wgpu::RenderPipeline>,
 }
 
@@ -60,6 +71,19 @@ impl Overlay {
     /// Of the pass `pass`, with these bindings, tested against the scene's depth.
     pub fn new(device: &wgpu::Device, label: &'static str, pass: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> Self {
         Self::of(device, label, compose::shader(device, pass), entries, true)
+    }
+
+    /// The same for a shader with the constants `SOFT` and `COVERAGE`.
+    pub fn told(
+        device: &wgpu::Device,
+        label: &'static str,
+        pass: &str,
+        entries: &[wgpu::BindGroupLayoutEntry],
+    ) -> Self {
+        Self {
+            told: true,
+            ..Self::new(device, label, pass, entries)
+        }
     }
 
     /// Of a shader that reads the scene's depth itself, if at all; without a depth attachment.
@@ -94,6 +118,7 @@ impl Overlay {
             pipeline_layout,
             shader,
             tested,
+            told: false,
             made: HashMap::new(),
         }
     }
@@ -111,9 +136,17 @@ impl Overlay {
         let colour = OverlayKey::colour(format, samples);
         let mask = coverage.then(|| OverlayKey::coverage(samples));
         for key in [Some(colour), mask].into_iter().flatten() {
-            self.prepare(device, key);
-            if behind {
-                self.prepare(device, key.behind());
+            // The scene's depth is read from one sample.
+            let softnesses: &[bool] = if self.told && samples == 1 {
+                &[false, true]
+            } else {
+                &[false]
+            };
+            for key in softnesses.iter().map(|soft| key.soft(*soft)) {
+                self.prepare(device, key);
+                if behind {
+                    self.prepare(device, key.behind());
+                }
             }
         }
     }
@@ -136,13 +169,18 @@ impl Overlay {
             dst_factor,
             operation: wgpu::BlendOperation::Add,
         };
+        let told = [("SOFT", f64::from(key.soft)), ("COVERAGE", f64::from(key.coverage))];
+        let options = || wgpu::PipelineCompilationOptions {
+            constants: if self.told { &told } else { &[] },
+            ..Default::default()
+        };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&self.pipeline_layout),
             vertex: wgpu::VertexState {
                 module: &self.shader,
                 entry_point: Some(if key.behind { "vertex_behind" } else { "vertex" }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                compilation_options: options(),
                 buffers: &[],
             },
             primitive: wgpu::PrimitiveState::default(),
@@ -160,7 +198,7 @@ impl Overlay {
             fragment: Some(wgpu::FragmentState {
                 module: &self.shader,
                 entry_point: Some(if key.coverage { "coverage" } else { "colour" }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                compilation_options: options(),
                 targets: &[Some(wgpu::ColorTargetState {
                     format: key.format,
                     blend: Some(wgpu::BlendState {

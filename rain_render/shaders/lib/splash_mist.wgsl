@@ -12,8 +12,7 @@ const RAIN_MIST_UNIT_M: f32 = 3.0;
 
 // Pieces of the way about an edge, and how far before and behind it they reach, m.
 const RAIN_MIST_PIECES: u32 = 12u;
-const RAIN_MIST_BEFORE_M: f32 = 0.25;
-const RAIN_MIST_BEHIND_M: f32 = 2.4;
+const RAIN_MIST_ABOUT_M: f32 = 2.4;
 
 // Less of a layer than this is not there.
 const RAIN_MIST_LEAST: f32 = 1e-3;
@@ -89,10 +88,10 @@ fn rain_mist_before(
 fn rain_mist_over(
     map: texture_depth_2d, cover: CoverParams, towards: vec3<f32>, edge: f32, start: f32, end: f32, height: f32,
 ) -> f32 {
-    // Fine where a ledge may end.
+    // Fine where a ledge may end. What is seen may be the edge at either end.
     var places = array<f32, RAIN_MIST_PIECES>(
-        -0.15, -0.07, 0.0, 0.08, 0.17, 0.3, 0.5, 0.75, 1.05, 1.4, 1.85, RAIN_MIST_BEHIND_M);
-    var at = max(edge - RAIN_MIST_BEFORE_M, start);
+        -1.7, -1.15, -0.7, -0.35, -0.12, 0.03, 0.18, 0.4, 0.75, 1.2, 1.75, RAIN_MIST_ABOUT_M);
+    var at = max(edge - RAIN_MIST_ABOUT_M, start);
     var sum = 0.0;
     var share = rain_mist_at(map, cover, towards * at, height);
     for (var i = 0u; i < RAIN_MIST_PIECES; i += 1u) {

@@ -165,3 +165,10 @@ fn colour(in: NearVertex) -> @location(0) vec4<f32> {
         rain_ramp(PATTERN_FROM, PATTERN_WHOLE, in.size.x),
     );
 }
+
+// That of the even streak.
+@fragment
+fn coverage(in: StreakVertex) -> @location(0) vec4<f32> {
+    let c = in.coverage * presence(in);
+    return vec4<f32>(c, 0.0, 0.0, c);
+}

@@ -54,9 +54,3 @@ fn before_scene(position: vec4<f32>) -> f32 {
 fn presence(in: StreakVertex) -> f32 {
     return rain_strip(in.local.x, in.size.x) * rain_strip(in.local.y, in.size.y) * before_scene(in.position);
 }
-
-@fragment
-fn coverage(in: StreakVertex) -> @location(0) vec4<f32> {
-    let c = in.coverage * presence(in);
-    return vec4<f32>(c, 0.0, 0.0, c);
-}

@@ -45,7 +45,7 @@ pub fn encode_coverage(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &Ra
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, key: OverlayKey) {
-    if let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key)) {
+    if let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key.soft(view.soft))) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, bind_group, &[]);
         // One big vertex-pulling draw: tiny instances waste most of a SIMD batch.

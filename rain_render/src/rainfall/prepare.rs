@@ -47,6 +47,8 @@ pub struct RainfallViewGpu {
     capacity: usize,
     pub(super) drops: u32,
     pub(super) panes: u32,
+    /// Streaks fade where they meet the scene.
+    pub(super) soft: bool,
     /// Which records may have a streak with a pattern, and as many words for them.
     pub(super) near_drops: Vec<u32>,
     near_list: wgpu::Buffer,
@@ -85,7 +87,7 @@ impl RainfallGpu {
             storage_entry(1, raster, true),
             texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
         ];
-        let draw = Overlay::new(device, "rain rainfall draw", "rainfall_draw", &even);
+        let draw = Overlay::told(device, "rain rainfall draw", "rainfall_draw", &even);
         let [view, streaks, scene] = even;
         let near = Overlay::new(
             device,
@@ -151,6 +153,7 @@ impl RainfallViewGpu {
             capacity: 1024,
             drops: 0,
             panes: 0,
+            soft: false,
             near_drops: Vec::new(),
             near_list,
             project: None,
@@ -200,6 +203,7 @@ impl RainfallViewGpu {
         self.drops = records.len() as u32;
         let uniform = input.uniform();
         self.panes = uniform.panes;
+        self.soft = uniform.soft > 0.0;
         near_drops(input, &mut self.near_drops);
         if records.len() > self.capacity {
             self.capacity = records.len().next_power_of_two();
