@@ -246,6 +246,7 @@ pub fn input(container: &Container, seed: u64, kappa: f32, soft_m: f32) -> Rainf
         seed,
         clip_from_eye: clip_from_eye(),
         clip_from_eye_before: clip_from_eye(),
+        eye_height_m: 1.7,
         eye_velocity_m_s: Vec3::ZERO,
         viewport_px: Vec2::new(SIZE[0] as f32, SIZE[1] as f32),
         focal_px: focal_px(),
@@ -255,6 +256,7 @@ pub fn input(container: &Container, seed: u64, kappa: f32, soft_m: f32) -> Rainf
             contrast: CONTRAST,
             kappa,
             soft_m,
+            patterned: false,
             detail: None,
         },
         lighting: Lighting {

@@ -59,7 +59,7 @@ fn mist_is_what_is_not_thrown_singly_and_no_more_than_a_quarter_of_the_drop() {
             } else {
                 0.0
             };
-            let expected = (all - drawn).max(0.0).min(2000.0);
+            let expected = (all - drawn).clamp(0.0, 2000.0);
             assert!((droplets - expected).abs() < 1e-13 * all.max(1.0), "{d} {film}");
             let water = droplets * MIST_SIZE.powi(3);
             assert!(water <= 0.25 + 1e-12, "{d} {film}: {water}");
