@@ -1,4 +1,23 @@
-//! Values of the app's that a plugin changes for a while and gives back.
+//! Values of the app's that a plugin holds: settings that were good, and what it changes for a while and gives back.
+
+use bevy::prelude::*;
+use rain_core::error::ConfigError;
+use rain_ecs::prelude::*;
+
+/// Keeps changed settings of an entity that validate, and names the fault of those that do not: the last good ones stay.
+pub(crate) fn keep_good<T>(
+    checked: Result<T, ConfigError>,
+    last: &mut T,
+    entity: Entity,
+    errors: &mut MessageWriter<RainConfigError>,
+) {
+    match checked {
+        Ok(good) => *last = good,
+        Err(error) => {
+            errors.write(RainConfigError { entity, error });
+        }
+    }
+}
 
 /// A value of the app's and what has been written in its place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

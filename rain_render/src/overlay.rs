@@ -11,11 +11,13 @@ pub(crate) struct OverlayKey {
     format: wgpu::TextureFormat,
     samples: u32,
     /// Coverage instead of colour.
-    coverage: bool,
+    pub coverage: bool,
     /// What lies behind glass instead of what does not.
     behind: bool,
-    /// Fades where it meets the scene; for shaders that are told.
-    soft: bool,
+    /// Fades where it meets the scene; for shaders with a constant for it.
+    pub soft: bool,
+    /// Mist of splashes is in it; likewise.
+    pub mist: bool,
 }
 
 impl OverlayKey {
@@ -27,6 +29,7 @@ impl OverlayKey {
             coverage: false,
             behind: false,
             soft: false,
+            mist: false,
         }
     }
 
@@ -38,6 +41,7 @@ impl OverlayKey {
             coverage: true,
             behind: false,
             soft: false,
+            mist: false,
         }
     }
 
@@ -49,6 +53,11 @@ impl OverlayKey {
     /// The same, fading where it meets the scene.
     pub fn soft(self, soft: bool) -> Self {
         Self { soft, ..self }
+    }
+
+    /// The same with mist of splashes.
+    pub fn mist(self, mist: bool) -> Self {
+        Self { mist, ..self }
     }
 }
 
@@ -62,8 +71,8 @@ pub(crate) struct Overlay {
     shader: wgpu::ShaderModule,
     /// Tested against the scene's depth, which is attached.
     tested: bool,
-    /// The shader is told by its constants `SOFT` and `COVERAGE` what it draws.
-    told: bool,
+    /// What the shader's pipeline constants are.
+    constants: fn(OverlayKey) -> Vec<(&'static str, f64)>,
     made: HashMap<OverlayKey, wgpu::RenderPipeline>,
 }
 
@@ -73,17 +82,9 @@ impl Overlay {
         Self::of(device, label, compose::shader(device, pass), entries, true)
     }
 
-    /// The same for a shader with the constants `SOFT` and `COVERAGE`.
-    pub fn told(
-        device: &wgpu::Device,
-        label: &'static str,
-        pass: &str,
-        entries: &[wgpu::BindGroupLayoutEntry],
-    ) -> Self {
-        Self {
-            told: true,
-            ..Self::new(device, label, pass, entries)
-        }
+    /// The same for a shader with pipeline constants.
+    pub fn with_constants(self, constants: fn(OverlayKey) -> Vec<(&'static str, f64)>) -> Self {
+        Self { constants, ..self }
     }
 
     /// Of a shader that reads the scene's depth itself, if at all; without a depth attachment.
@@ -118,7 +119,7 @@ impl Overlay {
             pipeline_layout,
             shader,
             tested,
-            told: false,
+            constants: |_| Vec::new(),
             made: HashMap::new(),
         }
     }
@@ -136,17 +137,9 @@ impl Overlay {
         let colour = OverlayKey::colour(format, samples);
         let mask = coverage.then(|| OverlayKey::coverage(samples));
         for key in [Some(colour), mask].into_iter().flatten() {
-            // The scene's depth is read from one sample.
-            let softnesses: &[bool] = if self.told && samples == 1 {
-                &[false, true]
-            } else {
-                &[false]
-            };
-            for key in softnesses.iter().map(|soft| key.soft(*soft)) {
-                self.prepare(device, key);
-                if behind {
-                    self.prepare(device, key.behind());
-                }
+            self.prepare(device, key);
+            if behind {
+                self.prepare(device, key.behind());
             }
         }
     }
@@ -169,9 +162,9 @@ impl Overlay {
             dst_factor,
             operation: wgpu::BlendOperation::Add,
         };
-        let told = [("SOFT", f64::from(key.soft)), ("COVERAGE", f64::from(key.coverage))];
+        let constants = (self.constants)(key);
         let options = || wgpu::PipelineCompilationOptions {
-            constants: if self.told { &told } else { &[] },
+            constants: &constants,
             ..Default::default()
         };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

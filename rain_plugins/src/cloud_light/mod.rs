@@ -10,7 +10,7 @@ use rain_core::optics::{
 };
 use rain_ecs::prelude::*;
 
-use crate::held::Held;
+use crate::held::{Held, keep_good};
 use crate::rainfall::{RainView, leading_view};
 
 /// Put on a [`DirectionalLight`], or on a camera with an [`EnvironmentMapLight`] or a [`Skybox`]: the water of the cloud over
@@ -194,12 +194,7 @@ pub(crate) fn dim(
     for (entity, settings, mut state, sun, environment, sky) in &mut lights {
         let state = &mut *state;
         if settings.is_changed() {
-            match settings.validated() {
-                Ok(good) => state.settings = good,
-                Err(error) => {
-                    errors.write(RainConfigError { entity, error });
-                }
-            }
+            keep_good(settings.validated(), &mut state.settings, entity, &mut errors);
         }
         state.advance(rate, dt);
         let settings = state.settings;

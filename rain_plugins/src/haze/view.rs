@@ -23,6 +23,7 @@ use super::mirror::haze_mirrors;
 use super::settings::{HazeSettings, HazeSky};
 use super::splash_mist::KnownMist;
 use crate::cover::AirAroundView;
+use crate::held::keep_good;
 use crate::rainfall::{
     CardViewFrame, RainView, RainViewFrame, SceneLamps, SoftwareAdapter, ViewMotion, fill_cards, view_volume,
 };
@@ -235,12 +236,7 @@ pub(crate) fn aim_haze(
         frame.shot = None;
         far_frame.clear();
         if settings.is_changed() {
-            match settings.validated() {
-                Ok(good) => frame.settings = good,
-                Err(error) => {
-                    errors.write(RainConfigError { entity, error });
-                }
-            }
+            keep_good(settings.validated(), &mut frame.settings, entity, &mut errors);
         }
         let settings = frame.settings;
         let eye = transform.translation();

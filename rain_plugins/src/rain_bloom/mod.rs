@@ -10,7 +10,7 @@ use rain_core::haze::{
 };
 use rain_ecs::prelude::*;
 
-use crate::held::Held;
+use crate::held::{Held, keep_good};
 
 /// Put on a camera with a [`Bloom`]: the more it rains at the camera, the more light the bloom spreads, and the farther.
 ///
@@ -106,12 +106,7 @@ fn widen(
     for (entity, settings, mut state, place, mut bloom) in &mut views {
         let state = &mut *state;
         if settings.is_changed() {
-            match settings.validated() {
-                Ok(good) => state.settings = good,
-                Err(error) => {
-                    errors.write(RainConfigError { entity, error });
-                }
-            }
+            keep_good(settings.validated(), &mut state.settings, entity, &mut errors);
         }
         let depth = state.settings.depth(rain.visibility_at(place.translation().as_dvec3()));
         let own_boost = state.boost.own(bloom.low_frequency_boost);

@@ -19,6 +19,7 @@ use super::motion::ViewMotion;
 use super::panes::{SeenThrough, ViewPanes, choose_panes, mark_blended};
 use super::settings::CardSettings;
 use crate::cover::AirAroundView;
+use crate::held::keep_good;
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
 
@@ -262,12 +263,7 @@ pub(crate) fn fill_containers(
         let (_, rotation, position) = transform.to_scale_rotation_translation();
         motion.observe(position, rotation, time.delta_secs());
         if view.is_changed() {
-            match view.validated() {
-                Ok(settings) => frame.settings = settings,
-                Err(error) => {
-                    errors.write(RainConfigError { entity, error });
-                }
-            }
+            keep_good(view.validated(), &mut frame.settings, entity, &mut errors);
         }
         let settings = frame.settings;
         let size = camera.physical_viewport_size().unwrap_or_default();

@@ -1,7 +1,7 @@
 //! Main world → render world: plain data only.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use bevy::asset::AssetId;
 use bevy::image::Image;
@@ -134,14 +134,11 @@ pub(super) fn extract_waves(
             extracted.ripple_side_m = if rings.is_off() { 0.0 } else { rings.side_m() };
         }
     }
-    if let Some(mut thrown) = main.get_resource_mut::<ThrownLight>() {
-        let thrown = thrown.bypass_change_detection();
+    if let Some(thrown) = main.get_resource::<ThrownLight>() {
         if lost {
-            thrown.lose();
-            extracted.thrown = ThrownLight::default();
-        } else {
-            extracted.thrown = *thrown;
+            thrown.done.store(false, Relaxed);
         }
+        extracted.thrown = thrown.clone();
     }
     if let Some(mut waves) = main.get_resource_mut::<PuddleWaves>() {
         let waves = waves.bypass_change_detection();

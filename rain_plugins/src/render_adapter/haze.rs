@@ -119,9 +119,13 @@ pub(super) fn prepare_haze(
     for (entity, view, camera, haze, depth, msaa) in &views {
         let Some(shot) = &haze.shot else { continue };
         let samples = msaa.samples();
-        hazes
-            .gpu
-            .prepare_pipelines(device, view.target_format, samples, haze.mask.is_some());
+        hazes.gpu.prepare_pipelines(
+            device,
+            view.target_format,
+            samples,
+            haze.mask.is_some(),
+            shot.splash.is_some(),
+        );
         let environment = haze.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         // In the heaviest rain of the view; what does not show there shows nowhere.
         let densest = shot.rates.ln_per_m.last().map_or(0.0, |ln| ln.exp());

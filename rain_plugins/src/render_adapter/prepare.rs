@@ -18,7 +18,7 @@ use rain_render::compose;
 use rain_render::cover::{CoverPlacement, open_sky};
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams, WaterMapPlaces};
 use rain_render::masks::{GroundMaps, MaskGpu, known_texture};
-use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu};
+use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, StreakDraws};
 use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
 use rain_render::ring_layers::{RingLayerGpu, RingLayersGpu};
 use rain_render::slope_mips::SlopeMipsGpu;
@@ -440,13 +440,15 @@ pub(super) fn prepare_rain(
         }
         let Some(shutter) = rain.shutter else { continue };
         let panes = rain.panes.seen_from(eye);
-        gpu.rainfall.prepare_pipelines(
-            device,
-            view.target_format,
-            msaa.samples(),
-            rain.masks.is_some(),
-            !panes.is_empty(),
-        );
+        let soft_m = if scene_depth.is_some() { shutter.soft_m } else { 0.0 };
+        let draws = StreakDraws {
+            coverage: rain.masks.is_some(),
+            behind: !panes.is_empty(),
+            soft: soft_m > 0.0,
+            patterned: shutter.patterned,
+        };
+        gpu.rainfall
+            .prepare_pipelines(device, view.target_format, msaa.samples(), draws);
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
         let lamps = rain.lamps.seen_from(eye, camera.exposure);
@@ -460,10 +462,7 @@ pub(super) fn prepare_rain(
             viewport_px: size,
             focal_px: rain.focal_px,
             near_m: near,
-            shutter: rain_render::rainfall::Shutter {
-                soft_m: if scene_depth.is_some() { shutter.soft_m } else { 0.0 },
-                ..shutter
-            },
+            shutter: rain_render::rainfall::Shutter { soft_m, ..shutter },
             lighting: view_lighting(&scene, environment, camera.exposure),
             lamps: &lamps,
             panes: &panes,

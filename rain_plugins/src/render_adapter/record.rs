@@ -108,6 +108,7 @@ pub(super) fn water(gpu: Res<RainGpu>, waves: Res<ExtractedWaves>, report: Res<R
         caustics.encode(&mut pass);
         span.end(&mut pass);
         drop(pass);
+        waves.thrown.done.store(true, Relaxed);
         report.recorded(PassName::Caustics);
     }
 }

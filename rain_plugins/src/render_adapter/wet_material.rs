@@ -1,9 +1,10 @@
 //! `StandardMaterial` extended by wetness.
 
 use bevy::asset::{Assets, embedded_asset};
-use bevy::pbr::{ExtendedMaterial, MaterialExtension, MaterialPlugin};
+use bevy::mesh::MeshVertexBufferLayoutRef;
+use bevy::pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline, MaterialPlugin};
 use bevy::prelude::*;
-use bevy::render::render_resource::AsBindGroup;
+use bevy::render::render_resource::{AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError};
 use bevy::render::storage::ShaderBuffer;
 use bevy::shader::{Shader, ShaderRef};
 use rain_render::compose;
@@ -14,6 +15,7 @@ pub type WetMaterial = ExtendedMaterial<StandardMaterial, WetSurface>;
 
 /// The extension: how strongly a material takes water, and where the shader finds the state of the world.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
+#[bind_group_data(WetSurfaceKey)]
 pub struct WetSurface {
     /// x: strength 0…1; y: porosity 0…1, below 0: guessed from roughness and metalness; z: 1 when the mesh's tag holds
     /// a wetness of its own; w: wetness set by hand, below 0: none.
@@ -85,7 +87,37 @@ pub struct WetSurface {
     pub caustics: Option<Handle<Image>>,
 }
 
+/// What pipelines of wet materials differ by.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[repr(C)]
+pub struct WetSurfaceKey {
+    /// Water throws light onto walls: what that takes would slow down all that is wet where branches are not skipped.
+    caustics: bool,
+}
+
+impl From<&WetSurface> for WetSurfaceKey {
+    fn from(surface: &WetSurface) -> Self {
+        Self {
+            caustics: surface.caustics.is_some(),
+        }
+    }
+}
+
 impl MaterialExtension for WetSurface {
+    fn specialize(
+        _: &MaterialExtensionPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        _: &MeshVertexBufferLayoutRef,
+        key: MaterialExtensionKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        if key.bind_group_data.caustics
+            && let Some(fragment) = &mut descriptor.fragment
+        {
+            fragment.shader_defs.push("RAIN_CAUSTICS".into());
+        }
+        Ok(())
+    }
+
     fn fragment_shader() -> ShaderRef {
         "embedded://rain_plugins/render_adapter/shaders/wet_surface.wgsl".into()
     }

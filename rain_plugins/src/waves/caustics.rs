@@ -1,5 +1,8 @@
 //! Light that puddles throw onto walls and ceilings, broken up by the rain's rings.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
 use bevy::prelude::*;
 use rain_core::waves::LEAST_ELEVATION;
 use rain_render::caustics::CausticFrame;
@@ -11,7 +14,7 @@ use crate::report::{PassName, RainReport, SkipReason};
 use crate::surface::{SurfaceState, WaterAppearance, WaterImages, WaterLevels};
 
 /// What puddles throw in a frame.
-#[derive(Resource, Clone, Copy, Debug, Default)]
+#[derive(Resource, Clone, Debug, Default)]
 pub struct ThrownLight {
     /// The light, and the water that throws it; none: nothing is thrown.
     pub(crate) frame: Option<CausticFrame>,
@@ -19,21 +22,16 @@ pub struct ThrownLight {
     pub(crate) gain: f32,
     /// The map has to be made anew.
     pub(crate) wanted: bool,
-    /// What the map shows.
-    drawn: Option<CausticFrame>,
-}
-
-impl ThrownLight {
-    /// The map is gone: the GPU has lost it.
-    pub(crate) fn lose(&mut self) {
-        self.drawn = None;
-    }
+    /// The map shows what was wanted last: the GPU may not have had it yet.
+    pub(crate) done: Arc<AtomicBool>,
+    /// What was wanted last.
+    asked: Option<CausticFrame>,
 }
 
 /// Aims the strongest directional light at the water, after the rings of the frame.
 pub(super) fn throw_light(
     mut thrown: ResMut<ThrownLight>,
-    rings: Res<RainRings>,
+    rings: Option<Res<RainRings>>,
     appearance: Option<Res<WaterAppearance>>,
     surface: Option<Res<SurfaceState>>,
     levels: Option<Res<WaterLevels>>,
@@ -55,6 +53,9 @@ pub(super) fn throw_light(
         return;
     };
     let reason = if appearance.caustics <= 0.0 {
+        if water.caustics.take().is_some() {
+            show(None, materials);
+        }
         SkipReason::Disabled
     } else if !views.iter().any(|camera| camera.is_active) {
         SkipReason::NoView
@@ -66,21 +67,21 @@ pub(super) fn throw_light(
         if water.caustics.is_none() {
             let map = images.add(caustic_image());
             water.caustics = Some(map.clone());
-            show(&map, materials);
+            thrown.asked = None;
+            show(Some(map), materials);
         }
-        let strength = if rings.is_off() {
-            0.0
-        } else {
-            appearance.ripple_strength
-        };
+        let rings = rings.filter(|rings| !rings.is_off());
         let frame = CausticFrame {
             towards: place.back().into(),
-            side_m: rings.side_m(),
-            strength,
+            side_m: rings.as_ref().map_or(1.0, |rings| rings.side_m()),
+            strength: rings.as_ref().map_or(0.0, |_| appearance.ripple_strength),
         };
         thrown.frame = Some(frame);
-        thrown.wanted = thrown.drawn != Some(frame) || rings.handover.wanted;
-        thrown.drawn = Some(frame);
+        let moved = rings.is_some_and(|rings| rings.handover.wanted);
+        if moved || thrown.asked.replace(frame) != Some(frame) {
+            thrown.done.store(false, Relaxed);
+        }
+        thrown.wanted = !thrown.done.load(Relaxed);
         if thrown.wanted {
             return;
         }
@@ -91,9 +92,9 @@ pub(super) fn throw_light(
     report.skipped(PassName::Caustics, reason);
 }
 
-/// Wet materials read the map from now on.
-fn show(map: &Handle<Image>, mut materials: ResMut<Assets<WetMaterial>>) {
+/// Wet materials read this map from now on, or none.
+fn show(map: Option<Handle<Image>>, mut materials: ResMut<Assets<WetMaterial>>) {
     for (_, material) in materials.iter_mut() {
-        material.extension.caustics = Some(map.clone());
+        material.extension.caustics.clone_from(&map);
     }
 }

@@ -86,9 +86,10 @@ impl Plugin for WavesPlugin {
                 PostUpdate,
                 (
                     create_tiles.run_if(resource_changed::<WaveWaterSettings>),
-                    (rings::choose_rings, rings::rain_on_water, caustics::throw_light)
+                    (rings::choose_rings, rings::rain_on_water)
                         .chain()
                         .run_if(resource_exists::<RainRings>),
+                    caustics::throw_light.after(rings::rain_on_water),
                     tile::move_water
                         .after(FootSystems)
                         .run_if(resource_exists::<PuddleWaves>.and_then(resource_exists::<WaterLevels>)),

@@ -10,6 +10,9 @@
 // What rain hits; read where there is mist of splashes.
 @group(0) @binding(6) var cover_map: texture_depth_2d;
 
+// Whether there may be mist of splashes: what it takes would slow down all haze where branches are not skipped.
+override SPLASH_MIST: bool = true;
+
 struct HazeVertex {
     @builtin(position) position: vec4<f32>,
     @location(0) ndc: vec2<f32>,
@@ -70,7 +73,7 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> HazeVertex {
     out.seen_c = vec4<f32>(lamp_seen(8u), lamp_seen(9u), lamp_seen(10u), lamp_seen(11u));
     out.seen_d = vec4<f32>(lamp_seen(12u), lamp_seen(13u), lamp_seen(14u), lamp_seen(15u));
     out.floor_height = 1e9;
-    if (view.splash.z > 0.0) {
+    if (SPLASH_MIST && view.splash.z > 0.0) {
         out.floor_height = rain_mist_floor(cover_map, view.cover, view.splash.w);
     }
     return out;
@@ -379,7 +382,7 @@ fn haze(in: HazeVertex, pixel: vec2<f32>, which: u32) -> Haze {
     }
     var through = depths(towards, ends);
     var mist = vec4<f32>(0.0);
-    if (view.splash.x + view.splash.z > 0.0) {
+    if (SPLASH_MIST && view.splash.x + view.splash.z > 0.0) {
         mist = splash_mist(in, pixel, which, towards, way, ends);
         through.y += mist.x + mist.y + mist.w;
     }
@@ -405,7 +408,7 @@ fn haze(in: HazeVertex, pixel: vec2<f32>, which: u32) -> Haze {
         out.obscured = mix(out.obscured, obscured, share);
     }
     out.light = light + glow(towards, ends, in);
-    if (mist.x + mist.y > 0.0) {
+    if (SPLASH_MIST && mist.x + mist.y > 0.0) {
         out.light += mist_glow(towards * way, towards, mist.x, in) + mist_glow(towards * mist.z, towards, mist.y, in);
     }
     if (view.air.z > 0.0) {

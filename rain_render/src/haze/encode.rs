@@ -33,7 +33,7 @@ pub fn encode_haze_coverage(pass: &mut wgpu::RenderPass, gpu: &HazeGpu, view: &H
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &HazeGpu, view: &HazeViewGpu, key: OverlayKey, samples: u32) {
-    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.overlay(samples).get(key)) else {
+    let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.overlay(samples).get(key.mist(view.mist))) else {
         return;
     };
     pass.set_pipeline(pipeline);

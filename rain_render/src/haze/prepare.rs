@@ -47,6 +47,8 @@ pub struct HazeViewGpu {
     /// Made for the first rainbow, and what it holds.
     bow: Option<(wgpu::Buffer, RainbowPhase)>,
     pub(super) uneven: bool,
+    /// There is mist of splashes.
+    pub(super) mist: bool,
     pub(super) areas: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
 }
@@ -108,6 +110,7 @@ fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
         compose::shader(device, "haze")
     };
     Overlay::untested(device, "rain haze", shader, &entries)
+        .with_constants(|key| vec![("SPLASH_MIST", f64::from(key.mist))])
 }
 
 impl HazeGpu {
@@ -139,22 +142,27 @@ impl HazeGpu {
         }
     }
 
-    /// Makes sure that the pipeline for a target exists; `coverage` asks for the mask's as well.
+    /// Makes sure that the pipeline for a target exists; `coverage` asks for the mask's as well, `splash` for those with mist of
+    /// splashes.
     pub fn prepare_pipelines(
         &mut self,
         device: &wgpu::Device,
         format: wgpu::TextureFormat,
         samples: u32,
         coverage: bool,
+        splash: bool,
     ) {
         let overlay = if samples > 1 {
             self.several.get_or_insert_with(|| overlay(device, true))
         } else {
             &mut self.single
         };
-        overlay.prepare(device, OverlayKey::colour(format, samples));
-        if coverage && samples == 1 {
-            overlay.prepare(device, OverlayKey::coverage(samples));
+        let mask = (coverage && samples == 1).then(|| OverlayKey::coverage(samples));
+        for key in [Some(OverlayKey::colour(format, samples)), mask].into_iter().flatten() {
+            overlay.prepare(device, key);
+            if splash {
+                overlay.prepare(device, key.mist(true));
+            }
         }
     }
 
@@ -185,6 +193,7 @@ impl HazeViewGpu {
             ),
             bow: None,
             uneven: false,
+            mist: false,
             areas: None,
             draw: None,
         }
@@ -200,7 +209,9 @@ impl HazeViewGpu {
         textures: HazeTextures,
         samples: u32,
     ) {
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform()));
+        let uniform = input.uniform();
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        self.mist = uniform.splash[0] + uniform.splash[2] > 0.0;
         self.uneven = input.areas.is_some();
         if let Some(areas) = &input.areas {
             let head = [[areas.packed.areas as f32, areas.packed.outside, areas.weather_mm_h, 0.0]];

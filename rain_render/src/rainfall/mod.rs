@@ -12,4 +12,4 @@ mod prepare;
 
 pub use encode::{encode_behind, encode_coverage, encode_draw, encode_project};
 pub use params::{Lighting, RainfallInput, Shutter};
-pub use prepare::{COVERAGE_FORMAT, DEPTH_FORMAT, RainfallGpu, RainfallTextures, RainfallViewGpu};
+pub use prepare::{COVERAGE_FORMAT, DEPTH_FORMAT, RainfallGpu, RainfallTextures, RainfallViewGpu, StreakDraws};

@@ -5,7 +5,7 @@ use crate::bindings::{
 };
 use crate::compose;
 use crate::gpu_types::{RainfallView, Streak};
-use crate::overlay::Overlay;
+use crate::overlay::{Overlay, OverlayKey};
 use crate::rainfall::RainfallInput;
 use crate::rainfall::near::near_drops;
 
@@ -25,6 +25,19 @@ pub struct RainfallGpu {
     no_depth: wgpu::TextureView,
     no_environment: wgpu::TextureView,
     sampler: wgpu::Sampler,
+}
+
+/// How a view's streaks are drawn; by default their light alone, against a hard depth test.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub struct StreakDraws {
+    /// Their coverage as well, into a [`COVERAGE_FORMAT`] target.
+    pub coverage: bool,
+    /// Those behind glass apart.
+    pub behind: bool,
+    /// They fade where they meet the scene, whose depth the view reads.
+    pub soft: bool,
+    /// Near ones have patterns.
+    pub patterned: bool,
 }
 
 /// Textures of the host that a view reads. `None`: open sky, no soft fade, no environment.
@@ -87,7 +100,8 @@ impl RainfallGpu {
             storage_entry(1, raster, true),
             texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
         ];
-        let draw = Overlay::told(device, "rain rainfall draw", "rainfall_draw", &even);
+        let draw = Overlay::new(device, "rain rainfall draw", "rainfall_draw", &even)
+            .with_constants(|key| vec![("SOFT", f64::from(key.soft)), ("COVERAGE", f64::from(key.coverage))]);
         let [view, streaks, scene] = even;
         let near = Overlay::new(
             device,
@@ -119,18 +133,23 @@ impl RainfallGpu {
         }
     }
 
-    /// Makes sure that the draw pipelines for a target exist; `coverage` asks for the mask's as well, `behind` for those of
-    /// what lies behind glass.
+    /// Makes sure that the pipelines exist that draw so over a target of `format` with `samples` samples.
     pub fn prepare_pipelines(
         &mut self,
         device: &wgpu::Device,
         format: wgpu::TextureFormat,
         samples: u32,
-        coverage: bool,
-        behind: bool,
+        draws: StreakDraws,
     ) {
-        for overlay in [&mut self.draw, &mut self.near] {
-            overlay.prepare_all(device, format, samples, coverage, behind);
+        let colour = OverlayKey::colour(format, samples);
+        let mask = draws.coverage.then(|| OverlayKey::coverage(samples));
+        for key in [Some(colour), mask].into_iter().flatten() {
+            for key in [Some(key), draws.behind.then(|| key.behind())].into_iter().flatten() {
+                self.draw.prepare(device, key.soft(draws.soft));
+                if draws.patterned {
+                    self.near.prepare(device, key);
+                }
+            }
         }
     }
 }

@@ -225,7 +225,7 @@ impl Shot<'_> {
             lamps: self.lamps,
         };
         let mut haze = HazeGpu::new(&gpu.device);
-        haze.prepare_pipelines(&gpu.device, COLOUR, self.samples, false);
+        haze.prepare_pipelines(&gpu.device, COLOUR, self.samples, false, self.splash.is_some());
         let mut view = HazeViewGpu::new(&gpu.device);
         let textures = HazeTextures {
             scene_depth: &depth,

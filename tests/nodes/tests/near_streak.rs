@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 use rain_core::optics::{StreakAngles, streak_pattern, swinging_body};
 use rain_core::rainfall::{Container, Distribution, Lamp, SizeClass, Spectrum};
 use rain_render::rainfall::{
-    DEPTH_FORMAT, Lighting, RainfallGpu, RainfallTextures, RainfallViewGpu, encode_draw, encode_project,
+    DEPTH_FORMAT, Lighting, RainfallGpu, RainfallTextures, RainfallViewGpu, StreakDraws, encode_draw, encode_project,
 };
 
 use crate::device::{Device, device};
@@ -149,7 +149,12 @@ fn half(bits: u16) -> f32 {
 
 /// The red of a picture, row after row.
 fn draw(gpu: &Device, pipelines: &mut RainfallGpu, view: &FieldView, container: &Container, scene: Scene) -> Vec<f32> {
-    pipelines.prepare_pipelines(&gpu.device, FORMAT, 1, false, false);
+    let draws = StreakDraws {
+        patterned: scene.patterned,
+        soft: view.input(SEED, container).shutter.soft_m > 0.0,
+        ..StreakDraws::default()
+    };
+    pipelines.prepare_pipelines(&gpu.device, FORMAT, 1, draws);
     let (target, depth) = (attachment(gpu, FORMAT), attachment(gpu, DEPTH_FORMAT));
     let sky = sky(gpu);
     let mut input = view.input(SEED, container);

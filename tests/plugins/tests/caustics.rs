@@ -58,29 +58,32 @@ fn a_pond_in_the_sun_throws_light_onto_a_wall_broken_up_by_the_rain() {
     let (mut pond, sun) = scene();
     assert_eq!(pond.test.recorded(PassName::Caustics), 0, "off by default");
     assert!(pond.test.skipped(PassName::Caustics, SkipReason::Disabled) > 0);
-    let without = pond.test.picture();
+    // Switched on over still water: its light is worked out once.
+    pond.weather(Weather::rain(0.0));
+    pond.test.leap(60);
+    let dark = pond.test.picture();
     pond.appearance(|look| look.caustics = 1.0);
-    assert!(pond.test.recorded(PassName::Caustics) > 0);
-    let with = pond.test.picture();
-    let lit = mean(&gain(&without, &with, [0.4, 0.6]));
-    let beside = mean(&gain(&without, &with, [0.0, 0.1]));
-    assert!(lit > 2.0, "{lit}");
+    pond.test.frames(3, FRAME);
+    let lit = pond.test.picture();
+    let before = mean(&gain(&dark, &lit, [0.4, 0.6]));
+    let beside = mean(&gain(&dark, &lit, [0.0, 0.1]));
+    assert!(before > 2.0, "{before}");
     assert!(beside.abs() < 0.3, "no water before this part: {beside}");
+    pond.test.reset();
+    pond.test.frames(5, FRAME);
+    assert_eq!(pond.test.recorded(PassName::Caustics), 0);
+    assert!(pond.test.skipped(PassName::Caustics, SkipReason::Settled) >= 5);
 
     // From nearby rings are seen: they part and gather the light.
     pond.look(Vec3::new(0.0, 1.1, -2.0), Vec3::new(0.0, 1.1, -3.0));
-    pond.appearance(|look| look.caustics = 4.0);
-    let rainy = pond.test.picture();
-    pond.weather(Weather::rain(0.0));
-    pond.test.leap(60);
-    pond.test.reset();
-    pond.test.frames(5, FRAME);
-    // After the rain the water is still: its light is not worked out again.
-    assert_eq!(pond.test.recorded(PassName::Caustics), 0);
-    assert!(pond.test.skipped(PassName::Caustics, SkipReason::Settled) >= 5);
-    let still = pond.test.picture();
     pond.appearance(|look| look.caustics = 0.0);
     let dark = pond.test.picture();
+    pond.appearance(|look| look.caustics = 4.0);
+    let still = pond.test.picture();
+    pond.weather(Weather::rain(60.0));
+    pond.test.leap(2);
+    assert!(pond.test.recorded(PassName::Caustics) > 0);
+    let rainy = pond.test.picture();
     let [broken, even] = [&rainy, &still].map(|picture| gain(&dark, picture, [0.3, 0.7]));
     assert!(
         mean(&even) > 5.0 && mean(&broken) > 5.0,

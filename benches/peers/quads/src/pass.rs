@@ -1,6 +1,6 @@
 //! Our pass and the bare one, timed in turn.
 
-use rain_render::rainfall::{DEPTH_FORMAT, encode_draw, encode_project};
+use rain_render::rainfall::{DEPTH_FORMAT, StreakDraws, encode_draw, encode_project};
 
 use crate::clock::{Moment, Passed, Summary};
 use crate::field::{Field, SIZE, Shown};
@@ -150,9 +150,13 @@ pub fn times(count: u32, pairs: usize) -> Result<PassTimes, String> {
         scene: texture(&device, DEPTH_FORMAT),
     };
     let mut hard = Field::new(&device, &queue, count)?;
-    hard.gpu.prepare_pipelines(&device, FORMAT, 1, false, false);
+    hard.gpu.prepare_pipelines(&device, FORMAT, 1, StreakDraws::default());
     let mut soft = Field::new(&device, &queue, count)?;
-    soft.gpu.prepare_pipelines(&device, FORMAT, 1, false, false);
+    let softly = StreakDraws {
+        soft: true,
+        ..StreakDraws::default()
+    };
+    soft.gpu.prepare_pipelines(&device, FORMAT, 1, softly);
     soft.soften(&device, &queue, SOFT_M, Some(&targets.scene));
     let bare = bare_pipeline(&device);
     let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {

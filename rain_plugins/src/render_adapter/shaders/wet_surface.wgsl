@@ -422,16 +422,19 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     out.color = apply_pbr_lighting(pbr);
     let reflected = lighting::F_AB(pbr.material.perceptual_roughness, max(dot(pbr.N, to_eye), 1e-4));
     out.color += vec4<f32>(mirrored.xyz * mirrored.w * shine * (0.02 * reflected.x + reflected.y), 0.0);
+#ifdef RAIN_CAUSTICS
     if (rain_surface.caustics.w > 0.0) {
         let thrown = thrown_light(p, face, wide, in.position.xy);
         out.color += vec4<f32>(body * (1.0 - pbr.material.metallic) * 0.3183099 * thrown, 0.0);
     }
+#endif
     out.color = main_pass_post_lighting_processing(pbr, out.color);
     return out;
 #endif
 }
 
 #ifndef PREPASS_PIPELINE
+#ifdef RAIN_CAUSTICS
 // Exposed light that a puddle throws onto a face at `p`; `wide`: width of the pixel on it, m.
 fn thrown_light(p: vec3<f32>, face: vec3<f32>, wide: f32, pixel: vec2<f32>) -> vec3<f32> {
     let towards = rain_surface.caustics.xyz;
@@ -491,6 +494,7 @@ fn thrown_light(p: vec3<f32>, face: vec3<f32>, wide: f32, pixel: vec2<f32>) -> v
     return rain_surface.caustics.w * mirrored * facing * lines * sun;
 }
 
+#endif
 // Exposed radiance of this view's mirror image that the surface at `p` shows, and how much of its mirror image that is.
 fn mirrored_radiance(p: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, roughness: f32, film: f32) -> vec4<f32> {
     // The mirror of this view's eye.
