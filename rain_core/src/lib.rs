@@ -37,6 +37,7 @@ pub mod quadrature;
 pub mod rainfall;
 pub mod sound;
 pub mod splash;
+pub mod spout;
 pub mod surface;
 mod table_lines;
 pub mod waves;

@@ -27,6 +27,7 @@ pub mod seed;
 pub mod snapshot;
 pub mod sound;
 pub mod splash;
+pub mod spout;
 pub mod state_hash;
 pub mod surface;
 pub mod weather;
@@ -46,6 +47,7 @@ pub use seed::RainSeed;
 pub use snapshot::RainSnapshot;
 pub use sound::RainSoundPlugin;
 pub use splash::FootSplashPlugin;
+pub use spout::SpoutPlugin;
 pub use state_hash::state_hash;
 pub use surface::SurfaceGroundPlugin;
 pub use weather::WeatherPlugin;
@@ -68,6 +70,7 @@ pub mod prelude {
     pub use crate::snapshot::{RainSnapshot, SnapshotAppExt, SnapshotError};
     pub use crate::sound::{RainSound, RainSoundPlugin};
     pub use crate::splash::{Foot, FootSplash, FootSplashPlugin, FootSplashSettings, FootStep, PaintedStep};
+    pub use crate::spout::{Spout, SpoutForm, SpoutPlugin, SpoutWater};
     pub use crate::state_hash::{HashState, StateHashAppExt, StateHasher, state_hash};
     pub use crate::surface::{
         DynamicWetness, FilmPress, FilmPresses, SurfaceGround, SurfaceGroundPlugin, SurfaceMaterial, SurfaceScene,
@@ -106,6 +109,7 @@ impl Plugin for RainEcsPlugin {
             RainfallFieldPlugin,
             CoverFieldPlugin,
             SurfaceGroundPlugin,
+            SpoutPlugin,
             FootSplashPlugin,
             LightningEventsPlugin,
             RainSoundPlugin,

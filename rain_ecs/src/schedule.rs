@@ -29,6 +29,8 @@ pub enum RainSystems {
     Canopy,
     /// Water that wheels pick up and throw.
     Wheels,
+    /// Water that pours from roofs.
+    Spouts,
     /// Pores, film and basins of the ground.
     Surface,
     /// Interactive water.
@@ -49,7 +51,7 @@ pub enum RainSystems {
 
 impl RainSystems {
     /// All sets in running order.
-    pub const ORDER: [Self; 15] = [
+    pub const ORDER: [Self; 16] = [
         Self::Input,
         Self::Weather,
         Self::Areas,
@@ -57,6 +59,7 @@ impl RainSystems {
         Self::Cover,
         Self::Canopy,
         Self::Wheels,
+        Self::Spouts,
         Self::Surface,
         Self::Waves,
         Self::Splash,

@@ -11,5 +11,6 @@ mod press;
 mod queries;
 mod snapshot;
 mod sound;
+mod spout;
 mod street;
 mod weather;

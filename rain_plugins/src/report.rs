@@ -150,6 +150,9 @@ pub struct Report {
     /// Crowns and thrown drops that the GPU drew in the latest frames that drew splashes, at most [`KEPT_FRAMES`] of them. A
     /// frame's count comes back a frame or two later.
     pub splashes: VecDeque<u32>,
+    /// Drops and pieces of jets in the air under eaves and pipes in the latest frames that drew any, at most
+    /// [`KEPT_FRAMES`] of them, also those beside the picture.
+    pub drips: VecDeque<u32>,
     /// Particles of far rain in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
     pub far_rain: VecDeque<u32>,
     /// GPU memory of the rain's own buffers and textures. Units: bytes.
@@ -191,6 +194,11 @@ impl RainReport {
     /// Notes how many crowns and thrown drops a frame drew.
     pub fn splashes(&self, count: u32) {
         keep(&mut self.lock().splashes, count);
+    }
+
+    /// Notes how many drops and pieces of jets were in the air under eaves and pipes near a view.
+    pub fn drips(&self, count: u32) {
+        keep(&mut self.lock().drips, count);
     }
 
     /// Notes how many particles of far rain a frame drew.

@@ -10,7 +10,10 @@ use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::{CAUSTIC_END_M, CAUSTIC_RAYS, CAUSTIC_TEXELS, CAUSTIC_WAYS_M, LEAST_ELEVATION, RING_FADE};
 
 /// Structs that cross from the CPU.
-pub const TYPES: &str = include_str!("../shaders/types.wgsl");
+pub const TYPES: &str = concat!(
+    include_str!("../shaders/types.wgsl"),
+    include_str!("../shaders/splash_types.wgsl")
+);
 
 /// A library file: pure functions, no bindings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +66,7 @@ pub const LIBRARIES: &[Library] = library![
     "lattice",
     "landing",
     "splash",
+    "spout",
     "lens",
     "surface_mask"
 ];

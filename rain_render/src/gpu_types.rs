@@ -1,4 +1,5 @@
-//! Every struct that crosses to the GPU: the twins of `shaders/types.wgsl`, compared member by member by a test.
+//! Every struct that crosses to the GPU: the twins of `shaders/types.wgsl` and `shaders/splash_types.wgsl`, compared member
+//! by member by a test.
 //!
 //! Units and meaning of each member stand in the WGSL file.
 
@@ -381,6 +382,17 @@ pub struct SplashFoot {
     pub key: [u32; 4],
 }
 
+/// Water that leaves one mouth.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SpoutMouth {
+    pub place: [f32; 4],
+    pub velocity: [f32; 4],
+    pub form: [f32; 4],
+    pub state: [f32; 4],
+    pub key: [u32; 4],
+}
+
 /// A view of far rain.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -427,6 +439,10 @@ pub struct SplashView {
     pub lamps: u32,
     pub panes: u32,
     pub feet: u32,
+    pub mouths: u32,
+    pub mouth_reach: f32,
+    pub pad_a: f32,
+    pub pad_b: f32,
     pub cover: CoverParams,
     pub levels: LevelMapParams,
     pub counts: [u32; SPLASH_COUNTS],
@@ -564,6 +580,7 @@ pub fn layouts() -> Vec<Layout> {
             pane),
         layout!(GlassPane: along, up, across),
         layout!(SplashFoot: place, key),
+        layout!(SpoutMouth: place, velocity, form, state, key),
         layout!(DropRecord: cell, drop),
         layout!(Streak: ends, shape, light),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
@@ -594,7 +611,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(Card: centre, facing, turn, place, layers),
         layout!(SplashView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, planes, wind,
             stream, viewport, fraction, cell, focal, near, exposure, contrast, soft, reach, near_reach, film, since, span,
-            capacity, lamps, panes, feet, cover, levels, counts, limits, classes, lamp, pane, foot),
+            capacity, lamps, panes, feet, mouths, mouth_reach, pad_a, pad_b, cover, levels, counts, limits, classes, lamp, pane, foot),
         layout!(SplashPart: ends, shape, light, form),
         layout!(SplashFind: part, id, number, pad_a, pad_b),
         layout!(LensView: viewport, arms, turns, cycle, size, half_tan, distance, aperture, mist, mist_per_s, wiping, pad_a,

@@ -17,8 +17,8 @@ use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::cover::open_sky;
 use rain_render::gpu_types::{LevelMapParams, SplashDraw};
 use rain_render::splash::{
-    SplashGpu, SplashInput, SplashTextures, SplashViewGpu, StepSplash, encode_splash_behind, encode_splash_coverage,
-    encode_splash_draw, encode_splash_make,
+    SplashGpu, SplashInput, SplashTextures, SplashViewGpu, SpoutStream, StepSplash, encode_splash_behind,
+    encode_splash_coverage, encode_splash_draw, encode_splash_make,
 };
 
 use super::extract::{ExtractedRainScene, ExtractedRainView};
@@ -174,6 +174,11 @@ pub(super) fn prepare_splashes(
             ..*step
         };
         let feet: Vec<StepSplash> = shot.steps.iter().map(from_eye).collect();
+        let mouth = |stream: &SpoutStream| SpoutStream {
+            place_m: stream.place_m - origin,
+            ..*stream
+        };
+        let mouths: Vec<SpoutStream> = shot.mouths.iter().map(mouth).collect();
         splashes.gpu.prepare_pipelines(
             device,
             view.target_format,
@@ -202,6 +207,8 @@ pub(super) fn prepare_splashes(
             lamps: &lamps,
             panes: &panes,
             feet: &feet,
+            mouths: &mouths,
+            mouth_reach_m: shot.mouth_reach_m,
             cover: match (cover.and_then(|c| c.placement), cover_image) {
                 (Some(placement), Some(_)) => placement.params(eye),
                 _ => open_sky(),

@@ -28,6 +28,7 @@ use super::areas::RainAreas;
 pub use super::captures::{Captures, RunUp};
 use super::expectation::Expectation;
 use super::puddles::{DepthMap, Puddles};
+use super::spouts::RoofSpout;
 use super::weather::Weather;
 use crate::surface::{WaterAppearance, WetLook};
 
@@ -52,6 +53,8 @@ pub struct Scenario {
     pub scene: Vec<ScenePart>,
     /// Grates that take water off the ground. Domain: at most 4096. Default: none.
     pub drains: Vec<DrainGrate>,
+    /// Edges and pipes that roofs pour from. Domain: at most 4096. Default: none.
+    pub spouts: Vec<RoofSpout>,
     /// Sky, sun, lamps, fog and exposure.
     pub environment: Environment,
     /// Rain, wind and air over time.
@@ -92,6 +95,7 @@ impl Default for Scenario {
             duration_s: 600.0,
             scene: Vec::new(),
             drains: Vec::new(),
+            spouts: Vec::new(),
             environment: Environment::default(),
             weather: Weather::default(),
             areas: RainAreas::default(),

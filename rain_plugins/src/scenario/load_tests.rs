@@ -441,6 +441,18 @@ fn values_out_of_domain_name_the_field() {
         ),
         (
             "warm_up_frames: 5",
+            "spouts: [(position: (0, 3, 0), form: Eave(length_m: -2))]",
+            "spouts[0].form.length_m",
+            "0.01 to 1000 m",
+        ),
+        (
+            "warm_up_frames: 5",
+            "spouts: [(position: (0, 3, 0), form: Pipe(diameter_m: 0.1), catchment_m2: -2)]",
+            "spouts[0].catchment_m2",
+            "0 to 1e6 m²",
+        ),
+        (
+            "warm_up_frames: 5",
             "run_ups: [(capture: 4, seconds: 1)]",
             "run_ups[0].capture",
             "0 to 3",

@@ -5,6 +5,7 @@
 //! | `file.rs`, `captures.rs`, `weather.rs`, `areas.rs`, `expectation.rs` | what the file may say |
 //! | `load.rs`, `validate.rs`, `locate.rs`, `error.rs` | reading it, with line and column of what is wrong |
 //! | `puddles.rs` | puddles that an artist placed on a part |
+//! | `spouts.rs` | edges and pipes that roofs pour from |
 //! | `path.rs` | vehicles and cameras as functions of time |
 //! | `headless.rs`, `stage.rs`, `session.rs` | the app, its world, its clock |
 //! | `sky.rs` | the generated sky environment |
@@ -37,6 +38,7 @@ pub mod report;
 pub mod run;
 pub mod session;
 pub mod sky;
+pub mod spouts;
 mod stage;
 pub mod timeline;
 pub mod validate;

@@ -176,12 +176,13 @@ pub fn run(
     progress(Progress::Writing);
     let passes = pass_rows(&session);
     let drawn = session.passes();
-    let [drops, cards, splashes] = [&drawn.drops, &drawn.cards, &drawn.splashes]
+    let [drops, cards, splashes, drips] = [&drawn.drops, &drawn.cards, &drawn.splashes, &drawn.drips]
         .map(|counts| counts.iter().map(|n| u64::from(*n)).collect::<Vec<_>>());
     let counts = Counts {
         drops: Tally::of(&drops),
         billboards: Tally::of(&cards),
         splashes: Tally::of(&splashes),
+        drips: Tally::of(&drips),
         ..Counts::default()
     };
     let (budget, _) = record.budget(&mut session);

@@ -579,6 +579,7 @@ pub(super) fn weather(app: &mut App, scenario: &Scenario) -> Result<(), RunError
             }),
         })
         .collect();
+    super::spouts::spawn(app, scenario);
     let by_hand = WaterByHand {
         wetness: scenario.weather.wetness,
         water_level: scenario.weather.water_level,

@@ -145,6 +145,15 @@ impl Scenario {
             number(&format!("{at}.perimeter_m"), drain.perimeter_m, 0.0, 1000.0, "m")?;
             number(&format!("{at}.area_m2"), drain.area_m2, 0.0, 1000.0, "m²")?;
         }
+        count("spouts", self.spouts.len(), MAX_PARTS, "spouts")?;
+        for (i, spout) in self.spouts.iter().enumerate() {
+            let at = format!("spouts[{i}]");
+            numbers(&format!("{at}.position"), &spout.position, -WORLD_M, WORLD_M, "m")?;
+            number(&format!("{at}.yaw_deg"), spout.yaw_deg, -36_000.0, 36_000.0, "degrees")?;
+            if let Err((part, error)) = spout.check() {
+                return config(&format!("{at}{part}"), error);
+            }
+        }
         environment(&self.environment)?;
         self.check_weather()?;
         number("areas.outside", self.areas.outside, 0.0, 1.0, "")?;

@@ -1,8 +1,10 @@
-//! Splashes of rain for each marked camera, on whatever the cover map says rain lands on, and of steps in water.
+//! Splashes of rain for each marked camera, on whatever the cover map says rain lands on, of steps in water, and water that
+//! pours from eaves and pipes.
 //!
 //! They are seen only: no state depends on them, and the water of puddles does not move under them.
 
 mod feet;
+mod spouts;
 mod view;
 
 pub(crate) use view::SplashShot;

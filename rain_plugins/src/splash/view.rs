@@ -9,9 +9,10 @@ use rain_core::rainfall::Spectrum;
 use rain_core::splash::{SplashAnchor, SplashExtent, SplashField, SplashShares};
 use rain_ecs::prelude::*;
 use rain_ecs::splash::FootSystems;
-use rain_render::splash::StepSplash;
+use rain_render::splash::{SpoutStream, StepSplash};
 
 use super::feet::{RecentSteps, frame_time_s, keep_steps};
+use super::spouts::{Pouring, SPOUT_REACH_M, in_air};
 use crate::cover::{AirAroundView, CoverMap};
 use crate::rainfall::{RainView, SoftwareAdapter, ViewMotion, fill_containers, view_volume};
 use crate::report::{PassName, RainReport, SkipReason};
@@ -98,8 +99,14 @@ pub(crate) struct SplashShot {
     pub capacity: u32,
     /// Steps in water; places in the world.
     pub steps: Vec<StepSplash>,
+    /// Mouths that water pours from; places in the world.
+    pub mouths: Vec<SpoutStream>,
+    pub mouth_reach_m: f32,
     pub motion: ViewMotion,
 }
+
+/// Crowns and drops for which there is room for each mouth of a spout: what falls of it, and splashes of what has landed.
+const MOUTH_PARTS: u32 = 64;
 
 /// What tables of splashes are made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +147,8 @@ impl SplashViewFrame {
     }
 }
 
-/// Splashes of rain in all [`RainView`]s, and of whoever steps in water ([`FootSplash`]).
+/// Splashes of rain in all [`RainView`]s, of whoever steps in water ([`FootSplash`]), and water that pours from roofs
+/// ([`Spout`]).
 pub struct SplashPlugin;
 
 impl Plugin for SplashPlugin {
@@ -185,6 +193,8 @@ fn aim_splashes(
     surface: Option<Res<SurfaceState>>,
     areas: Option<Res<RainAreas>>,
     recent: Res<RecentSteps>,
+    ground: Option<Res<SurfaceGround>>,
+    spouts: Query<(Entity, &SpoutWater, &GlobalTransform), Without<RainView>>,
     mut views: Query<(
         Entity,
         &RainView,
@@ -201,6 +211,14 @@ fn aim_splashes(
     // In steps, so that tables last while the film grows; downwards, so that nothing that splashes is left out.
     let film_mm = surface.map_or(0.0, |s| (f64::from(s.state.y) / FILM_STEP_MM).floor() * FILM_STEP_MM);
     let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
+    let pouring = Pouring {
+        since_tick_s: f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9,
+        wind_m_s: field.wind_m_s(),
+        ground: ground.as_ref().and_then(|ground| ground.ground()),
+        seed: seed.0,
+    };
+    let mut flowing: Vec<_> = spouts.iter().filter(|(_, water, _)| water.flow_m3_s() > 0.0).collect();
+    flowing.sort_unstable_by_key(|(entity, ..)| *entity);
     let mut any = false;
     for (entity, view, camera, projection, transform, motion, mut frame) in &mut views {
         any = true;
@@ -217,6 +235,13 @@ fn aim_splashes(
                 0.0
             })
         });
+        let mut mouths = Vec::new();
+        if settings.enabled && settings.budget != Some(0) {
+            for spout in &flowing {
+                pouring.add(transform.translation(), *spout, &mut mouths);
+            }
+        }
+        let alone = steps.is_empty() && mouths.is_empty();
         let mapped = cover.as_ref().is_some_and(|cover| cover.placement.is_some());
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
@@ -227,13 +252,13 @@ fn aim_splashes(
             || settings.distance_m <= 0.0
         {
             Some(SkipReason::Disabled)
-        } else if spectrum.intensity_mm_h <= 0.0 && steps.is_empty() {
+        } else if spectrum.intensity_mm_h <= 0.0 && alone {
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_)) {
             Some(SkipReason::Unsupported)
         } else if air.closed_in == Some(entity) {
             Some(SkipReason::Indoors)
-        } else if steps.is_empty() && !mapped {
+        } else if alone && !mapped {
             Some(SkipReason::NoGround)
         } else {
             None
@@ -245,7 +270,7 @@ fn aim_splashes(
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
         let budget = settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 });
-        // Where there are steps alone, no ground is looked through for impacts.
+        // Where there are steps and spouts alone, no ground is looked through for impacts.
         let impacts = mapped && spectrum.intensity_mm_h > 0.0;
         let reach_m = if impacts { settings.distance_m } else { 0.0 };
         let near_m = settings.drops_distance_m.min(reach_m);
@@ -262,6 +287,9 @@ fn aim_splashes(
             budget,
         };
         let tables = frame.field(&source);
+        if !mouths.is_empty() {
+            report.drips(in_air(&mouths));
+        }
         frame.shot = Some(SplashShot {
             field: tables,
             anchor: SplashAnchor::new(volume.eye_m, now),
@@ -274,8 +302,10 @@ fn aim_splashes(
             reach_m,
             near_reach_m: near_m,
             // The budget is a mean.
-            capacity: 2 * budget + 1024,
+            capacity: 2 * budget + 1024 + MOUTH_PARTS * mouths.len() as u32,
             steps: steps.clone(),
+            mouths,
+            mouth_reach_m: SPOUT_REACH_M,
             motion: *motion,
         });
     }

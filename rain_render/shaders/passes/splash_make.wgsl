@@ -10,6 +10,7 @@
 @group(0) @binding(6) var environment_sampler: sampler;
 @group(0) @binding(7) var level_map: texture_2d<f32>;
 @group(0) @binding(8) var<storage, read_write> finds: array<SplashFind>;
+@group(0) @binding(9) var<storage, read> mouths: array<SpoutMouth>;
 
 // Crowns are gone after this, s.
 const CROWN_END: f32 = 0.02;
@@ -85,6 +86,8 @@ struct Found {
     velocity: vec3<f32>,
     diameter: f32,
     film: f32,
+    // Speed against the surface that it falls on.
+    toward: f32,
     excess: f32,
     age: f32,
     life: f32,
@@ -93,8 +96,8 @@ struct Found {
     marks: vec3<u32>,
 }
 
-// The crown of a splash, or nothing (shape.w = 0).
-fn crown(found: Found) -> SplashPart {
+// The crown of a splash that is seen to `reach`, or nothing (shape.w = 0).
+fn crown(found: Found, reach: f32) -> SplashPart {
     var part: SplashPart;
     let speed = -dot(found.velocity, found.normal);
     let life = rain_crown_life(found.diameter);
@@ -113,7 +116,7 @@ fn crown(found: Found) -> SplashPart {
     opacity = min(opacity, 1.0);
     let radius = grown * rain_crown_radius(found.diameter, speed, found.film, time);
     let height = grown * rain_crown_height(found.diameter, found.excess, time);
-    return standing_sheet(found.place, found.normal, radius, height, opacity, reach_fade(length(found.place), view.reach), rain_unit(found.key.x));
+    return standing_sheet(found.place, found.normal, radius, height, opacity, reach_fade(length(found.place), reach), rain_unit(found.key.x));
 }
 
 // Fades what is right before the eye, and towards the end of the reach.
@@ -164,8 +167,8 @@ fn standing_sheet(
     return part;
 }
 
-// Thrown drop `index`, or nothing.
-fn thrown(found: Found, count: u32, index: u32) -> SplashPart {
+// Thrown drop `index` of a splash whose drops are seen to `reach`, or nothing.
+fn thrown(found: Found, count: u32, index: u32, reach: f32) -> SplashPart {
     var part: SplashPart;
     // At rest, seen from where the splash is, it would cover this much.
     let most = found.diameter * 1e-3 * rain_thrown_share(found.key, index) * view.focal / max(length(found.place) - 0.5, 0.05);
@@ -180,14 +183,23 @@ fn thrown(found: Found, count: u32, index: u32) -> SplashPart {
         return part;
     }
     let p = found.place + now;
-    let fade = reach_fade(length(p), view.near_reach) * (1.0 - rain_ramp(0.7 * found.life, found.life, found.age));
+    let fade = reach_fade(length(p), reach) * (1.0 - rain_ramp(0.7 * found.life, found.life, found.age));
     // Young drops have flown for a part of the exposure.
     let weight = found.weight * min(found.age / view.exposure, 1.0);
     return flying(p, found.place + before, drop.w, weight, fade);
 }
 
-// A drop on its way through the exposure, or nothing (shape.w = 0).
+// A drop on its way through the exposure, lit, or nothing (shape.w = 0).
 fn flying(p: vec3<f32>, before: vec3<f32>, diameter_mm: f32, weight: f32, fade: f32) -> SplashPart {
+    var part = streak_of(p, before, diameter_mm, weight, fade);
+    if (part.shape.w > 0.0) {
+        part.light = vec4<f32>(shine(p), part.light.w);
+    }
+    return part;
+}
+
+// The same without its light.
+fn streak_of(p: vec3<f32>, before: vec3<f32>, diameter_mm: f32, weight: f32, fade: f32) -> SplashPart {
     var part: SplashPart;
     let head = view.clip_from_eye * vec4<f32>(p, 1.0);
     let tail = view.clip_from_eye_before * vec4<f32>(before, 1.0);
@@ -206,7 +218,7 @@ fn flying(p: vec3<f32>, before: vec3<f32>, diameter_mm: f32, weight: f32, fade: 
     }
     part.ends = vec4<f32>(a, b);
     part.shape = vec4<f32>(head.z / head.w, tail.z / tail.w, 0.5 * width, shown);
-    part.light = vec4<f32>(shine(p), fade * opacity);
+    part.light = vec4<f32>(0.0, 0.0, 0.0, fade * opacity);
     part.form = vec4<f32>(0.0, 0.0, 0.0, 0.01 * side_of_glass(p));
     return part;
 }
@@ -217,6 +229,39 @@ fn note(part: SplashPart, id: u32, number: u32) {
     if (at < view.capacity) {
         finds[at] = SplashFind(part, id, number, 0u, 0u);
     }
+}
+
+// Notes the parts of a splash where it has met the water or the ground; their number. Those before it have `number`.
+fn note_splash(splash: Found, id: u32, number: u32, reach: f32, near_reach: f32) -> u32 {
+    var found = splash;
+    var parts_found = 0u;
+    let water = rain_standing_water(level_map, view.levels, found.place);
+    if (water > 0.0) {
+        found.film = max(1e3 * water, found.film);
+        found.place.y += water;
+        found.normal = vec3<f32>(0.0, 1.0, 0.0);
+    }
+    found.excess = rain_splash_excess(found.diameter, found.toward, found.film);
+    if (found.excess <= 1.0) {
+        return 0u;
+    }
+    let sheet = crown(found, reach);
+    if (sheet.shape.w > 0.0) {
+        note(sheet, id, number);
+        parts_found++;
+    }
+    if (length(found.place) > near_reach) {
+        return parts_found;
+    }
+    let drops = rain_thrown_count(found.excess, found.key);
+    for (var i = 0u; i < drops; i++) {
+        let drop = thrown(found, drops, i, near_reach);
+        if (drop.shape.w > 0.0) {
+            note(drop, id, number + parts_found);
+            parts_found++;
+        }
+    }
+    return parts_found;
 }
 
 // Finds the splashes of one cell and slot; the number of their parts.
@@ -280,33 +325,9 @@ fn cell_and_slot(id: u32) -> u32 {
             || rain_covered(cover_map, view.cover, found.place, 1.0 / fall)) {
             continue;
         }
-        let water = rain_standing_water(level_map, view.levels, found.place);
         found.film = view.film;
-        if (water > 0.0) {
-            found.film = max(1e3 * water, view.film);
-            found.place.y += water;
-            found.normal = vec3<f32>(0.0, 1.0, 0.0);
-        }
-        found.excess = rain_splash_excess(found.diameter, toward, found.film);
-        if (found.excess <= 1.0) {
-            continue;
-        }
-        let sheet = crown(found);
-        if (sheet.shape.w > 0.0) {
-            note(sheet, id, parts_found);
-            parts_found++;
-        }
-        if (distance > view.near_reach) {
-            continue;
-        }
-        let drops = rain_thrown_count(found.excess, found.key);
-        for (var i = 0u; i < drops; i++) {
-            let drop = thrown(found, drops, i);
-            if (drop.shape.w > 0.0) {
-                note(drop, id, parts_found);
-                parts_found++;
-            }
-        }
+        found.toward = toward;
+        parts_found += note_splash(found, id, parts_found, view.reach, view.near_reach);
     }
     return parts_found;
 }
@@ -350,13 +371,196 @@ fn part_of_step(id: u32, index: u32) -> u32 {
     return 0u;
 }
 
+// Parcels of a mouth that are looked for in the air, and splashes of those that have landed last.
+const MOUTH_PARCELS: u32 = 48u;
+const MOUTH_SPLASHES: u32 = 10u;
+// How far drops that its splashes throw are seen, m.
+const MOUTH_DROPS_REACH: f32 = 6.0;
+// As many drops as one splash shows at most, and splashes that a parcel makes at most.
+const MOUTH_WEIGHT: f32 = 5.0;
+const MOUTH_COPIES: u32 = 4u;
+// Largest drop that a jet which lands whole splashes like, mm.
+const MOUTH_DROP_MM: f32 = 12.0;
+// Film that stands where water pours, mm.
+const MOUTH_FILM_MM: f32 = 0.5;
+
+// Where a mouth's water lands.
+struct MouthEnd {
+    age: f32,
+    normal: vec3<f32>,
+}
+
+fn mouth_way(mouth: SpoutMouth, age: f32) -> vec3<f32> {
+    return rain_spout_place(mouth.velocity.xyz, mouth.velocity.w, view.wind.xyz, age);
+}
+
+// Diameter of a jet, which thins as it falls, m.
+fn jet_width(mouth: SpoutMouth, age: f32) -> f32 {
+    let down = rain_spout_speed(mouth.velocity.xyz, mouth.velocity.w, age);
+    let now = length(vec2<f32>(down, length(mouth.velocity.xz)));
+    return mouth.form.x * sqrt(length(mouth.velocity.xyz) / max(now, 1e-3));
+}
+
+// The ground below. The map's texels under an eave hold the roof: it is looked for a little further out, too.
+fn mouth_end(mouth: SpoutMouth) -> MouthEnd {
+    for (var out = 0; out < 3; out++) {
+        var age = mouth.state.y;
+        var normal = vec3<f32>(0.0, 1.0, 0.0);
+        var found = false;
+        for (var again = 0; again < 2; again++) {
+            let at = mouth.place.xyz + mouth_way(mouth, age);
+            let landing = rain_landing(cover_map, view.cover, at.xz + 0.2 * f32(out) * mouth.state.zw);
+            found = landing.found > 0.5 && landing.height < mouth.place.y - 0.1;
+            if (!found) {
+                break;
+            }
+            age = rain_spout_time(mouth.velocity.xyz, mouth.velocity.w, mouth.place.y - landing.height);
+            normal = landing.normal;
+        }
+        if (found) {
+            return MouthEnd(age, normal);
+        }
+    }
+    return MouthEnd(mouth.state.y, vec3<f32>(0.0));
+}
+
+// A piece of a jet between two places, `diameter` m thick, or nothing (shape.w = 0).
+fn jet_piece(a: vec3<f32>, b: vec3<f32>, diameter: f32, weight: f32, fade: f32) -> SplashPart {
+    var part: SplashPart;
+    let head = view.clip_from_eye * vec4<f32>(a, 1.0);
+    let tail = view.clip_from_eye * vec4<f32>(b, 1.0);
+    if (min(head.w, tail.w) < max(view.near, 0.05)) {
+        return part;
+    }
+    let size = diameter * view.focal / (0.5 * (head.w + tail.w));
+    let width = max(1.0, size);
+    let opacity = min(1.0, weight * size / width);
+    let shown = fade * rain_contrast(opacity, view.contrast);
+    if (shown < LEAST_OPACITY) {
+        return part;
+    }
+    part.ends = vec4<f32>(to_pixels(head), to_pixels(tail));
+    part.shape = vec4<f32>(head.z / head.w, tail.z / tail.w, 0.5 * width, shown);
+    part.light = vec4<f32>(0.0, 0.0, 0.0, fade * opacity);
+    part.form = vec4<f32>(0.0, 0.0, 0.0, 0.01 * side_of_glass(a));
+    return part;
+}
+
+// The water of a mouth: its jet, its drops in the air, the splashes of those that have landed. The number of parts.
+fn parts_of_mouth(id: u32, index: u32) -> u32 {
+    let mouth = mouths[index];
+    let place = mouth.place.xyz;
+    let fade = reach_fade(length(place), view.mouth_reach);
+    if (fade <= 0.0 || beside(place, place + mouth_way(mouth, mouth.state.y), 0.5)) {
+        return 0u;
+    }
+    let end = mouth_end(mouth);
+    let low = place + mouth_way(mouth, end.age);
+    let above = shine(place);
+    let below = shine(low);
+    let period = mouth.place.w;
+    let gathered = mouth.state.x;
+    let jets = mouth.form.y > 0.0;
+    let diameter = mouth.form.z;
+    var parts_found = 0u;
+    if (!jets) {
+        // What hangs there and grows.
+        var drop = flying(place, place, diameter * pow(gathered, 1.0 / 3.0), 1.0, fade);
+        if (drop.shape.w > 0.0) {
+            note(drop, id, 0u);
+            parts_found++;
+        }
+    }
+    for (var k = 0u; k <= MOUTH_PARCELS; k++) {
+        let oldest = (gathered + f32(k)) * period;
+        let youngest = max(oldest - period, 0.0);
+        if (youngest >= end.age) {
+            break;
+        }
+        let marks = rain_pcg3d(vec3<u32>(mouth.key.xy, mouth.key.z - k));
+        let breaks = mouth.form.y * (0.85 + 0.3 * rain_unit(marks.x));
+        // Parcels differ: they go down with the water.
+        let glint = 0.75 + 0.5 * rain_unit(marks.y);
+        var part: SplashPart;
+        var age = oldest;
+        if (youngest < breaks) {
+            let until = min(oldest, min(breaks, end.age));
+            age = 0.5 * (youngest + until);
+            // It swells and shrinks before it breaks.
+            let thin = jet_width(mouth, age);
+            let swell = 1.0 + 0.7 * clamp(age / breaks, 0.0, 1.0) * (rain_unit(marks.z) - 0.5);
+            part = jet_piece(place + mouth_way(mouth, youngest), place + mouth_way(mouth, until), thin * swell, 1.0, fade);
+        } else {
+            if (jets) {
+                age = oldest - 0.5 * period;
+            }
+            if (age > end.age) {
+                break;
+            }
+            // Drops part sideways a little.
+            let aside = 0.03 * (vec2<f32>(rain_unit(marks.y), rain_unit(marks.z)) - 0.5);
+            let astray = vec3<f32>(aside.x, 0.0, aside.y);
+            let earlier = max(age - view.exposure, 0.0);
+            part = streak_of(
+                place + mouth_way(mouth, age) + age * astray,
+                place + mouth_way(mouth, earlier) + earlier * astray,
+                diameter,
+                mouth.form.w,
+                fade,
+            );
+        }
+        if (part.shape.w > 0.0) {
+            part.light = vec4<f32>(glint * mix(above, below, clamp(age / end.age, 0.0, 1.0)), part.light.w);
+            note(part, id, parts_found);
+            parts_found++;
+        }
+    }
+    // Nothing is known of the ground: it falls out of sight.
+    if (dot(end.normal, end.normal) < 0.5) {
+        return parts_found;
+    }
+    let first = u32(max(ceil(end.age / period - gathered), 0.0));
+    let shown = f32(MOUTH_SPLASHES) * period;
+    let copies = clamp(u32(mouth.form.w / MOUTH_WEIGHT), 1u, MOUTH_COPIES);
+    // Drops part as they fall; a jet comes down over its own width.
+    let spread = select(0.03 * end.age, 0.03 + 3.0 * mouth.form.x, jets);
+    var found: Found;
+    found.normal = end.normal;
+    found.velocity = (low - place - mouth_way(mouth, max(end.age - 0.01, 0.0))) / min(0.01, max(end.age, 1e-3));
+    found.toward = -dot(found.velocity, found.normal);
+    found.diameter = diameter;
+    if (mouth.form.y > end.age) {
+        // It lands whole: as drops of its own width.
+        found.diameter = clamp(1e3 * jet_width(mouth, end.age), diameter, MOUTH_DROP_MM);
+    }
+    found.film = max(view.film, MOUTH_FILM_MM);
+    found.weight = min(mouth.form.w / f32(copies), MOUTH_WEIGHT);
+    for (var i = 0u; i < MOUTH_SPLASHES * copies; i++) {
+        let k = first + i / copies;
+        let copy = i % copies;
+        let marks = rain_pcg3d(vec3<u32>(mouth.key.x, mouth.key.y ^ (copy << 28u), mouth.key.z - k));
+        // What stands for several lands in the time of all.
+        found.age = (gathered + f32(k) - f32(copy) / f32(copies)) * period - end.age;
+        found.life = min(0.1 + 0.2 * rain_unit(marks.z), shown);
+        if (found.age < 0.0 || found.age > found.life) {
+            continue;
+        }
+        let aside = spread * (vec2<f32>(rain_unit(marks.x), rain_unit(marks.y)) - 0.5);
+        found.place = low + vec3<f32>(aside.x, 0.0, aside.y);
+        found.key = rain_pcg3d(marks);
+        found.marks = rain_pcg3d(found.key.yzx);
+        parts_found += note_splash(found, id, parts_found, view.mouth_reach, MOUTH_DROPS_REACH);
+    }
+    return parts_found;
+}
+
 fn cells_and_slots() -> u32 {
     let side = 2u * view.span + 1u;
     return side * side * u32(RAIN_SPLASH_SLOTS);
 }
 
 fn invocations() -> u32 {
-    return cells_and_slots() + view.feet * FOOT_PARTS;
+    return cells_and_slots() + view.feet * FOOT_PARTS + view.mouths;
 }
 
 // Error: places 1e-4 m, and as the functions say.
@@ -365,8 +569,10 @@ fn find(@builtin(global_invocation_id) id: vec3<u32>) {
     let cells = cells_and_slots();
     if (id.x < cells) {
         places[id.x] = cell_and_slot(id.x);
-    } else if (id.x < invocations()) {
+    } else if (id.x < cells + view.feet * FOOT_PARTS) {
         places[id.x] = part_of_step(id.x, id.x - cells);
+    } else if (id.x < invocations()) {
+        places[id.x] = parts_of_mouth(id.x, id.x - cells - view.feet * FOOT_PARTS);
     }
 }
 

@@ -5,7 +5,7 @@ use rain_core::rainfall::Lamp;
 use rain_core::splash::{FOOT_DROPS, SPLASH_CELL_M, SPLASH_SLOTS, SplashAnchor, SplashField};
 
 use crate::glass::{self, Pane};
-use crate::gpu_types::{CoverParams, LevelMapParams, SplashFoot, SplashView};
+use crate::gpu_types::{CoverParams, LevelMapParams, SplashFoot, SplashView, SpoutMouth};
 use crate::lamps;
 use crate::rainfall::Lighting;
 
@@ -30,6 +30,70 @@ pub struct StepSplash {
     pub strength: f32,
     /// Tells it from all others.
     pub key: [u32; 3],
+}
+
+/// Mouths that water pours from which a view draws; more are left out. Units: none.
+pub const MAX_MOUTHS: usize = 16_384;
+
+/// Water that leaves one mouth of an eave or a pipe, as parcels that are let go one after the other: drops, or pieces of a
+/// jet that become drops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpoutStream {
+    /// Where, relative to the eye. Units: m.
+    pub place_m: Vec3,
+    /// At which it leaves, level or downward. Units: m/s.
+    pub velocity_m_s: Vec3,
+    /// Units: m/s. Held in [0.1, 1000].
+    pub terminal_m_s: f32,
+    /// Between parcels. Units: s. Held in [0.001, 1e6].
+    pub period_s: f32,
+    /// Number of the newest parcel, whole and fraction. Units: none.
+    pub released: f64,
+    /// Until it has fallen as far as ground is looked for. Units: s. Held in [0.001, 10].
+    pub limit_s: f32,
+    /// Away from the roof (x, z), a unit vector.
+    pub outward: Vec2,
+    /// Diameter of the jet as it leaves. Units: m.
+    pub jet_m: f32,
+    /// Until it has broken into drops; 0: it drips. Units: s.
+    pub breakup_s: f32,
+    /// Diameter of drops. Units: mm. Held in [0.1, 10].
+    pub drop_mm: f32,
+    /// Drops that one of a parcel shows. Units: none.
+    pub weight: f32,
+    /// Tells it from all others.
+    pub key: [u32; 2],
+}
+
+impl SpoutStream {
+    /// The record of this mouth.
+    #[must_use]
+    pub fn record(&self) -> SpoutMouth {
+        let whole = self.released.floor();
+        let finite = |v: Vec3| if v.is_finite() { v } else { Vec3::ZERO };
+        let velocity = finite(self.velocity_m_s);
+        SpoutMouth {
+            place: finite(self.place_m).extend(held(self.period_s, 1e-3, 1e6)).to_array(),
+            velocity: velocity
+                .with_y(velocity.y.min(0.0))
+                .extend(held(self.terminal_m_s, 0.1, 1e3))
+                .to_array(),
+            form: [
+                held(self.jet_m, 0.0, 10.0),
+                held(self.breakup_s, 0.0, 1e6),
+                held(self.drop_mm, 0.1, 10.0),
+                held(self.weight, 0.0, 1e6),
+            ],
+            state: [
+                held((self.released - whole) as f32, 0.0, 0.999_999),
+                held(self.limit_s, 1e-3, 10.0),
+                self.outward.x,
+                self.outward.y,
+            ],
+            // The lowest bits tell neighbours apart.
+            key: [self.key[0], self.key[1], whole.rem_euclid(4_294_967_296.0) as u32, 0],
+        }
+    }
 }
 
 /// One view of splashes.
@@ -75,6 +139,10 @@ pub struct SplashInput<'a> {
     pub panes: &'a [Pane],
     /// Steps in water; the first [`MAX_FEET`] count.
     pub feet: &'a [StepSplash],
+    /// Mouths that water pours from; the first [`MAX_MOUTHS`] count.
+    pub mouths: &'a [SpoutStream],
+    /// How far they are seen. Units: m.
+    pub mouth_reach_m: f32,
     /// Cover map relative to the eye.
     pub cover: CoverParams,
     /// Standing water relative to the eye.
@@ -92,10 +160,14 @@ impl SplashInput<'_> {
         (self.reach_m() / SPLASH_CELL_M as f32).ceil() as u32 + 1
     }
 
-    /// Cells and slots that are looked through, and parts of steps.
+    /// Cells and slots that are looked through, parts of steps, and mouths.
     pub(super) fn invocations(&self) -> u32 {
         let side = 2 * self.span() + 1;
-        side * side * SPLASH_SLOTS + self.feet.len().min(MAX_FEET) as u32 * FOOT_PARTS
+        side * side * SPLASH_SLOTS + self.feet.len().min(MAX_FEET) as u32 * FOOT_PARTS + self.mouths()
+    }
+
+    fn mouths(&self) -> u32 {
+        self.mouths.len().min(MAX_MOUTHS) as u32
     }
 
     /// The uniform of this view.
@@ -147,6 +219,10 @@ impl SplashInput<'_> {
             lamps,
             panes,
             feet: self.feet.len().min(MAX_FEET) as u32,
+            mouths: self.mouths(),
+            mouth_reach: held(self.mouth_reach_m, 0.0, 1e4),
+            pad_a: 0.0,
+            pad_b: 0.0,
             cover: self.cover,
             levels: self.levels,
             counts: self.field.count_limits,

@@ -4,11 +4,12 @@ use crate::bindings::{
     compute_pipeline, linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry,
 };
 use crate::compose;
-use crate::gpu_types::{SplashDraw, SplashFind, SplashPart, SplashView};
+use crate::gpu_types::{SplashDraw, SplashFind, SplashPart, SplashView, SpoutMouth};
 use crate::overlay::Overlay;
 use crate::rainfall::DEPTH_FORMAT;
 
-use super::SplashInput;
+use super::params::MAX_MOUTHS;
+use super::{SplashInput, SpoutStream};
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
@@ -45,6 +46,7 @@ pub struct SplashViewGpu {
     places: wgpu::Buffer,
     finds: wgpu::Buffer,
     parts: wgpu::Buffer,
+    mouths: wgpu::Buffer,
     pub(super) arguments: wgpu::Buffer,
     cells: u32,
     capacity: u32,
@@ -83,6 +85,7 @@ impl SplashGpu {
                     wgpu::TextureViewDimension::D2,
                 ),
                 storage_entry(8, compute, false),
+                storage_entry(9, compute, true),
             ],
         });
         let module = compose::shader(device, "splash_make");
@@ -147,6 +150,12 @@ impl SplashViewGpu {
                 size_of::<SplashDraw>(),
                 storage | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC,
             ),
+            mouths: buffer(
+                device,
+                "rain spout mouths",
+                size_of::<SpoutMouth>(),
+                storage | wgpu::BufferUsages::COPY_DST,
+            ),
             cells: 1,
             capacity: 1,
             invocations: 0,
@@ -187,6 +196,19 @@ impl SplashViewGpu {
                 storage | wgpu::BufferUsages::COPY_SRC,
             );
         }
+        let records: Vec<SpoutMouth> = input.mouths.iter().take(MAX_MOUTHS).map(SpoutStream::record).collect();
+        let bytes: &[u8] = bytemuck::cast_slice(&records);
+        if bytes.len() as u64 > self.mouths.size() {
+            self.mouths = buffer(
+                device,
+                "rain spout mouths",
+                bytes.len().next_power_of_two(),
+                storage | wgpu::BufferUsages::COPY_DST,
+            );
+        }
+        if !bytes.is_empty() {
+            queue.write_buffer(&self.mouths, 0, bytes);
+        }
         let uniform = input.uniform();
         self.panes = uniform.panes;
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
@@ -210,6 +232,7 @@ impl SplashViewGpu {
                 entry(6, wgpu::BindingResource::Sampler(&gpu.sampler)),
                 entry(7, wgpu::BindingResource::TextureView(&levels)),
                 entry(8, self.finds.as_entire_binding()),
+                entry(9, self.mouths.as_entire_binding()),
             ],
         }));
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -234,6 +257,7 @@ impl SplashViewGpu {
     pub fn memory_bytes(&self) -> usize {
         size_of::<SplashView>()
             + size_of::<SplashDraw>()
+            + self.mouths.size() as usize
             + self.cells as usize * 4
             + self.capacity as usize * (size_of::<SplashFind>() + size_of::<SplashPart>())
     }

@@ -23,6 +23,7 @@ mod quadrature;
 mod sound;
 mod spectrum;
 mod splash;
+mod spout;
 mod streak_texture;
 mod surface;
 mod waves;

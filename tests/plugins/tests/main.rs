@@ -34,6 +34,7 @@ mod scenes;
 mod skipping;
 mod splash_mist;
 mod splashes;
+mod spouts;
 mod steps;
 mod tiles;
 mod two_views;

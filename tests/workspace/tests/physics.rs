@@ -13,7 +13,7 @@ pub const TABLE: &str = "docs/physics.md";
 const HEAD: &str = "| Quantity | Equation (units, domain) | Function | Test | Source | Known error |";
 
 /// Folders of `rain_core` whose public functions are models.
-pub const MODELS: [&str; 12] = [
+pub const MODELS: [&str; 13] = [
     "canopy",
     "cover",
     "haze",
@@ -23,6 +23,7 @@ pub const MODELS: [&str; 12] = [
     "rainfall",
     "sound",
     "splash",
+    "spout",
     "surface",
     "waves",
     "wheels",

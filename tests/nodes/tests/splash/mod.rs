@@ -4,4 +4,5 @@ mod feet;
 mod functions;
 mod lamps;
 mod scene;
+mod spouts;
 mod view;

@@ -10,7 +10,9 @@ use rain_render::cover::CoverPlacement;
 use rain_render::glass::Pane;
 use rain_render::gpu_types::{LevelMapParams, SplashDraw, SplashPart};
 use rain_render::rainfall::Lighting;
-use rain_render::splash::{SplashGpu, SplashInput, SplashTextures, SplashViewGpu, StepSplash, encode_splash_make};
+use rain_render::splash::{
+    SplashGpu, SplashInput, SplashTextures, SplashViewGpu, SpoutStream, StepSplash, encode_splash_make,
+};
 
 use crate::cover_parity::depth_texture;
 use crate::device::Device;
@@ -51,6 +53,7 @@ pub struct Extra<'a> {
     pub lamps: &'a [Lamp],
     pub panes: &'a [Pane],
     pub feet: &'a [StepSplash],
+    pub mouths: &'a [SpoutStream],
 }
 
 impl Default for Scene {
@@ -247,6 +250,8 @@ impl Scene {
             lamps: extra.lamps,
             panes: extra.panes,
             feet: extra.feet,
+            mouths: extra.mouths,
+            mouth_reach_m: 45.0,
             cover: self.placement().params(eye),
             levels,
         };
