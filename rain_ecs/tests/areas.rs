@@ -61,6 +61,7 @@ fn without_an_area_the_state_is_that_of_a_world_without_the_plugin() {
         RainfallFieldPlugin,
         CoverFieldPlugin,
         SurfaceGroundPlugin,
+        SpoutPlugin,
         FootSplashPlugin,
     ));
     without.insert_resource(bevy_time::TimeUpdateStrategy::ManualDuration(std::time::Duration::ZERO));
