@@ -17,6 +17,7 @@
 
 pub mod clock;
 pub mod cover;
+mod entity_order;
 pub mod error;
 pub mod history;
 pub mod lightning;

@@ -161,7 +161,8 @@ fn bad_spouts_are_named_and_the_last_good_one_goes_on() {
         ("flow_length_m", |s, v| s.flow_length_m = v, [0.0, 2000.0]),
     ];
     assert!(Spout::default().validated().is_ok() && Spout::pipe(0.1, 20.0).validated().is_ok());
-    let (mut app, eave, _) = street();
+    let (mut app, eave, pipe) = street();
+    app.world_mut().get_mut::<Spout>(pipe).expect("a spout").feeds_ground = false;
     run(&mut app, 60);
     for (name, set, bad) in fields {
         for bad in bad.into_iter().chain([f32::NAN, f32::INFINITY]) {
@@ -180,8 +181,18 @@ fn bad_spouts_are_named_and_the_last_good_one_goes_on() {
         }
     }
     assert_eq!(water(&app, eave).spout(), Some(&Spout::eave(4.0, 5.0)));
-    let before = water(&app, eave).poured_m3();
+    // A scale of 0 has no direction: the water comes down all the same.
+    let added = |app: &App| app.world().resource::<SurfaceGround>().ledger().added_m3;
+    app.world_mut().get_mut::<Transform>(eave).expect("a spout").scale = Vec3::ZERO;
+    let (had, earlier) = (added(&app), water(&app, eave).poured_m3());
+    run(&mut app, 5);
+    let poured = water(&app, eave).poured_m3() - earlier;
+    assert!(
+        poured > 0.0 && (added(&app) - had - poured).abs() < 1e-9 * poured,
+        "{poured}"
+    );
     // A place that is no number pours nothing and breaks nothing.
+    let before = water(&app, eave).poured_m3();
     app.world_mut()
         .get_mut::<Transform>(eave)
         .expect("a spout")

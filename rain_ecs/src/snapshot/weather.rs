@@ -6,6 +6,7 @@ use rain_core::weather::{ArtistSettings, GustSettings, Timeline, WeatherConditio
 use serde::{Deserialize, Serialize};
 
 use super::{Apply, SnapshotError, SnapshotPart};
+use crate::entity_order::order_key;
 use crate::lightning::{ActiveLightning, Lightning};
 use crate::weather::{
     ActiveWeather, ArtistControls, GustState, Gusts, LevelCurve, LevelTimeline, WaterByHand, Weather, WeatherMode,
@@ -72,7 +73,7 @@ impl SnapshotPart for WeatherPart {
             let entities = world.iter_entities().filter(|entity| entity.contains::<Weather>());
             entities
                 .map(|entity| entity.id())
-                .min_by_key(|entity| (entity.index_u32(), entity.generation().to_bits()))
+                .min_by_key(|entity| order_key(*entity))
         });
         let mut state = self.state.validated().map_err(|error| refused(error.to_string()))?;
         let by_hand = match self.by_hand {

@@ -9,6 +9,7 @@ use rain_core::weather::{ColumnForcing, SurfaceClass};
 
 use super::components::{Spout, SpoutForm, SpoutWater};
 use crate::clock::RainClock;
+use crate::entity_order::{in_order, order_key};
 use crate::error::RainConfigError;
 use crate::rainfall::RainfallField;
 use crate::rainfall::areas::RainAreas;
@@ -21,18 +22,8 @@ const POSE_STEPS_PER_M: f64 = 65_536.0;
 /// Most places on the ground that an eave feeds.
 const MOST_PLACES: f64 = 512.0;
 
-/// Every spout's water in a fixed order.
-pub(super) fn in_order(world: &World) -> Vec<(Entity, &SpoutWater)> {
-    let mut spouts: Vec<_> = world
-        .iter_entities()
-        .filter_map(|entity| entity.get::<SpoutWater>().map(|water| (entity.id(), water)))
-        .collect();
-    spouts.sort_unstable_by_key(|(entity, _)| (entity.index_u32(), entity.generation().to_bits()));
-    spouts
-}
-
 pub(super) fn hash_spouts(world: &World, hasher: &mut StateHasher) {
-    for (_, water) in in_order(world) {
+    for (_, water) in in_order::<SpoutWater>(world) {
         water.column.state_bits().into_iter().for_each(|bits| hasher.u64(bits));
     }
 }
@@ -97,7 +88,7 @@ pub(super) fn pour(
     // Waters meet on the ground: the order of entities decides, not that of memory.
     order.clear();
     order.extend(spouts.iter().map(|(entity, ..)| entity));
-    order.sort_unstable_by_key(|entity| (entity.index_u32(), entity.generation().to_bits()));
+    order.sort_unstable_by_key(|entity| order_key(*entity));
     let mut ground = surface
         .as_mut()
         .and_then(|surface| surface.bypass_change_detection().ground_mut());
@@ -135,6 +126,8 @@ pub(super) fn pour(
         };
         let turned = |v: Vec3| {
             let v = pose.rotation().mul_vec3(v).as_dvec3();
+            // A scale of 0 has no direction: all comes down below.
+            let v = if v.is_finite() { v } else { DVec3::ZERO };
             (v * POSE_STEPS_PER_M).round() / POSE_STEPS_PER_M
         };
         let wind = field.as_ref().map_or(DVec3::ZERO, |field| field.wind_m_s());

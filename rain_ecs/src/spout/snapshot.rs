@@ -5,7 +5,7 @@ use rain_core::weather::{SurfaceClass, SurfaceColumn};
 use serde::{Deserialize, Serialize};
 
 use super::components::{Spout, SpoutWater};
-use super::pour::in_order;
+use crate::entity_order::in_order;
 use crate::snapshot::{Apply, SnapshotError, SnapshotPart};
 use crate::surface::SurfaceMaterial;
 use crate::weather::{ActiveWeather, WeatherState};
@@ -17,13 +17,19 @@ pub(super) struct SpoutPart(Vec<SurfaceColumn>);
 
 impl SnapshotPart for SpoutPart {
     fn save(world: &World) -> Option<Self> {
-        let columns: Vec<_> = in_order(world).into_iter().map(|(_, water)| water.column).collect();
+        let columns: Vec<_> = in_order::<SpoutWater>(world)
+            .into_iter()
+            .map(|(_, water)| water.column)
+            .collect();
         (!columns.is_empty()).then_some(Self(columns))
     }
 
     fn prepare(self, world: &World) -> Result<Apply, SnapshotError> {
         let refused = |what: String| SnapshotError::Refused { part: "spouts", what };
-        let entities: Vec<_> = in_order(world).into_iter().map(|(entity, _)| entity).collect();
+        let entities: Vec<_> = in_order::<SpoutWater>(world)
+            .into_iter()
+            .map(|(entity, _)| entity)
+            .collect();
         if entities.len() != self.0.len() {
             let (found, here) = (self.0.len(), entities.len());
             return Err(refused(format!("it has {found} spouts, this world {here}")));

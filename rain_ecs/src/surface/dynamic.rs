@@ -11,6 +11,7 @@ use rain_core::weather::{ColumnForcing, SurfaceClass, SurfaceColumn};
 use super::material::SurfaceMaterial;
 use crate::clock::RainClock;
 use crate::cover::CoverField;
+use crate::entity_order::in_order;
 use crate::rainfall::areas::RainAreas;
 use crate::state_hash::StateHasher;
 use crate::weather::{ActiveWeather, WeatherMode, WeatherState};
@@ -105,18 +106,8 @@ impl DynamicWetness {
     }
 }
 
-/// Every object in a fixed order.
-pub(super) fn in_order(world: &World) -> Vec<(Entity, &DynamicWetness)> {
-    let mut objects: Vec<_> = world
-        .iter_entities()
-        .filter_map(|entity| entity.get::<DynamicWetness>().map(|object| (entity.id(), object)))
-        .collect();
-    objects.sort_unstable_by_key(|(entity, _)| (entity.index_u32(), entity.generation().to_bits()));
-    objects
-}
-
 pub(super) fn hash_objects(world: &World, hasher: &mut StateHasher) {
-    for (_, object) in in_order(world) {
+    for (_, object) in in_order::<DynamicWetness>(world) {
         object.numbers().into_iter().for_each(|v| hasher.f64(v));
         object.column.state_bits().into_iter().for_each(|bits| hasher.u64(bits));
     }

@@ -13,6 +13,7 @@ use rain_core::surface::ground::Ground;
 use serde::{Deserialize, Serialize};
 
 use super::ground::SurfaceGround;
+use crate::entity_order::{in_order, order_key};
 use crate::snapshot::{Apply, SnapshotError, SnapshotPart};
 use crate::state_hash::StateHasher;
 
@@ -162,7 +163,7 @@ pub(super) fn press_films(
     // Ways may cross: the order of entities decides, not that of memory.
     order.clear();
     order.extend(presses.iter().map(|(entity, _)| entity));
-    order.sort_unstable_by_key(|entity| (entity.index_u32(), entity.generation().to_bits()));
+    order.sort_unstable_by_key(|entity| order_key(*entity));
     let pressed = pressed.bypass_change_detection();
     for &entity in &*order {
         // The pose as it is set, not as it was last propagated: that depends on frames.
@@ -196,18 +197,8 @@ pub(super) fn press_films(
     }
 }
 
-/// Every press in a fixed order.
-fn in_order(world: &World) -> Vec<(Entity, &FilmPress)> {
-    let mut presses: Vec<_> = world
-        .iter_entities()
-        .filter_map(|entity| entity.get::<FilmPress>().map(|press| (entity.id(), press)))
-        .collect();
-    presses.sort_unstable_by_key(|(entity, _)| (entity.index_u32(), entity.generation().to_bits()));
-    presses
-}
-
 pub(super) fn hash_presses(world: &World, hasher: &mut StateHasher) {
-    for (_, press) in in_order(world) {
+    for (_, press) in in_order::<FilmPress>(world) {
         let place = press.before.unwrap_or(DVec3::NAN);
         place.to_array().into_iter().for_each(|v| hasher.f64(v));
     }
@@ -219,7 +210,7 @@ pub(super) struct PressPart(Vec<Option<[f64; 3]>>);
 
 impl SnapshotPart for PressPart {
     fn save(world: &World) -> Option<Self> {
-        let places: Vec<_> = in_order(world)
+        let places: Vec<_> = in_order::<FilmPress>(world)
             .into_iter()
             .map(|(_, press)| press.before.map(|place| place.to_array()))
             .collect();
@@ -231,7 +222,10 @@ impl SnapshotPart for PressPart {
             part: "film_press",
             what,
         };
-        let entities: Vec<_> = in_order(world).into_iter().map(|(entity, _)| entity).collect();
+        let entities: Vec<_> = in_order::<FilmPress>(world)
+            .into_iter()
+            .map(|(entity, _)| entity)
+            .collect();
         if entities.len() != self.0.len() {
             let (found, here) = (self.0.len(), entities.len());
             return Err(refused(format!("it has {found} wheels and feet, this world {here}")));

@@ -5,12 +5,13 @@ use rain_core::surface::ground::{Ground, GroundState};
 use rain_core::weather::{SurfaceClass, SurfaceColumn};
 use serde::{Deserialize, Serialize};
 
-use super::dynamic::{DynamicWetness, in_order};
+use super::dynamic::DynamicWetness;
 use super::ground::SurfaceGround;
 use super::material::SurfaceMaterial;
 use super::scene::{SurfaceScene, SurfaceSettings};
 use crate::clock::RainClock;
 use crate::cover::CoverField;
+use crate::entity_order::in_order;
 use crate::snapshot::{Apply, SnapshotError, SnapshotPart};
 use crate::weather::{ActiveWeather, WeatherState};
 
@@ -101,7 +102,7 @@ impl SnapshotPart for ObjectsPart {
                 column: object.column,
             }
         };
-        Some(Self(in_order(world).into_iter().map(state).collect()))
+        Some(Self(in_order::<DynamicWetness>(world).into_iter().map(state).collect()))
     }
 
     fn prepare(self, world: &World) -> Result<Apply, SnapshotError> {
@@ -109,7 +110,7 @@ impl SnapshotPart for ObjectsPart {
             part: "dynamic_wetness",
             what,
         };
-        let objects = in_order(world);
+        let objects = in_order::<DynamicWetness>(world);
         if objects.len() != self.0.len() {
             let (found, here) = (self.0.len(), objects.len());
             return Err(refused(format!("it has {found} objects, this world {here}")));

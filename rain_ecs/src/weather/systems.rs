@@ -7,6 +7,7 @@ use rain_core::weather::ArtistSettings;
 use super::components::{ArtistControls, RainTypeTable, WaterByHand, Weather, WeatherMode, WeatherTimeline};
 use super::state::WeatherState;
 use crate::clock::RainClock;
+use crate::entity_order::order_key;
 use crate::error::RainConfigError;
 
 /// The entity whose [`Weather`] counts.
@@ -49,7 +50,7 @@ pub(super) fn choose_weather(
     mut messages: MessageWriter<WeatherIgnored>,
 ) {
     let mut entities: Vec<Entity> = weathers.iter().collect();
-    entities.sort_unstable_by_key(|entity| (entity.index_u32(), entity.generation().to_bits()));
+    entities.sort_unstable_by_key(|entity| order_key(*entity));
     let first = entities.first().copied();
     active.switched = active.entity != first;
     if active.switched {

@@ -71,7 +71,7 @@ impl Pouring<'_> {
         };
         // What is not a number is nowhere near.
         let near = place.distance(eye) < SPOUT_REACH_M + half;
-        if flow <= 0.0 || !near {
+        if flow <= 0.0 || !near || !rotation.is_finite() {
             return;
         }
         let forward = rotation * Vec3::NEG_Z;

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::components::{RainArea, RainOutside};
 use super::state::RainAreas;
 use crate::clock::RainClock;
+use crate::entity_order::{in_order, order_key};
 use crate::snapshot::{Apply, SnapshotError, SnapshotPart};
 
 /// The areas in force. They are put on the entities that have areas, in order; what is left over loses its area, and new
@@ -38,12 +39,10 @@ impl SnapshotPart for AreasPart {
             area.check().map_err(|error| refused(error.to_string()))?;
         }
         Ok(Box::new(move |world| {
-            let mut entities: Vec<Entity> = world
-                .iter_entities()
-                .filter(|entity| entity.contains::<RainArea>())
-                .map(|entity| entity.id())
+            let entities: Vec<Entity> = in_order::<RainArea>(world)
+                .into_iter()
+                .map(|(entity, _)| entity)
                 .collect();
-            entities.sort_unstable_by_key(|entity| (entity.index_u32(), entity.generation().to_bits()));
             for &entity in entities.iter().skip(self.areas.len()) {
                 world.entity_mut(entity).remove::<RainArea>();
             }
@@ -57,7 +56,7 @@ impl SnapshotPart for AreasPart {
                 };
                 known.push((entity, area));
             }
-            known.sort_unstable_by_key(|(entity, _)| (entity.index_u32(), entity.generation().to_bits()));
+            known.sort_unstable_by_key(|(entity, _)| order_key(*entity));
             world.insert_resource(RainOutside(self.outside));
             let now_s = world.get_resource::<RainClock>().map_or(0.0, RainClock::now_s);
             world.resource_mut::<RainAreas>().restore(known, self.outside, now_s);

@@ -9,6 +9,7 @@ use rain_core::surface::ground::UnevenRain;
 
 use super::components::{RainArea, RainAreaRefused, RainOutside};
 use crate::clock::RainClock;
+use crate::entity_order::order_key;
 use crate::state_hash::{HashState, StateHasher};
 use crate::weather::{ActiveWeather, WeatherState};
 
@@ -175,10 +176,9 @@ pub(super) fn follow_areas(
     }
     let mut before = std::mem::take(&mut this.known).into_iter().peekable();
     let mut present: Vec<_> = components.iter().collect();
-    let key = |entity: Entity| (entity.index_u32(), entity.generation().to_bits());
-    present.sort_unstable_by_key(|(entity, _)| key(*entity));
+    present.sort_unstable_by_key(|(entity, _)| order_key(*entity));
     for (entity, area) in present {
-        while before.next_if(|(old, _)| key(*old) < key(entity)).is_some() {}
+        while before.next_if(|(old, _)| order_key(*old) < order_key(entity)).is_some() {}
         let old = before.next_if(|(old, _)| *old == entity).map(|(_, settings)| settings);
         let wanted = if old.is_none() || area.is_changed() {
             match area.0.check() {
