@@ -8,7 +8,7 @@ use super::components::{Spout, SpoutWater};
 use crate::entity_order::in_order;
 use crate::snapshot::{Apply, SnapshotError, SnapshotPart};
 use crate::surface::SurfaceMaterial;
-use crate::weather::{ActiveWeather, WeatherState};
+use crate::weather::ActiveWeather;
 
 /// The water of every roof in the order of their entities: a world with as many spouts, spawned in the same order, takes
 /// it.
@@ -34,11 +34,7 @@ impl SnapshotPart for SpoutPart {
             let (found, here) = (self.0.len(), entities.len());
             return Err(refused(format!("it has {found} spouts, this world {here}")));
         }
-        let active = world.get_resource::<ActiveWeather>().and_then(ActiveWeather::entity);
-        let weather = active
-            .and_then(|entity| world.get::<WeatherState>(entity))
-            .cloned()
-            .unwrap_or_default();
+        let weather = ActiveWeather::state(world).cloned().unwrap_or_default();
         for (&entity, column) in entities.iter().zip(&self.0) {
             let class = world.get::<SurfaceMaterial>(entity).map_or(SurfaceClass::Roof, |m| m.0);
             SurfaceColumn::restore(column.ledger(), weather.surfaces().properties(class))

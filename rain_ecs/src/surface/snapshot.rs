@@ -13,7 +13,7 @@ use crate::clock::RainClock;
 use crate::cover::CoverField;
 use crate::entity_order::in_order;
 use crate::snapshot::{Apply, SnapshotError, SnapshotPart};
-use crate::weather::{ActiveWeather, WeatherState};
+use crate::weather::ActiveWeather;
 
 /// The ground's water. Where the ground is not built yet it is built from the scene.
 #[derive(Serialize, Deserialize)]
@@ -115,11 +115,7 @@ impl SnapshotPart for ObjectsPart {
             let (found, here) = (self.0.len(), objects.len());
             return Err(refused(format!("it has {found} objects, this world {here}")));
         }
-        let active = world.get_resource::<ActiveWeather>().and_then(ActiveWeather::entity);
-        let weather = active
-            .and_then(|entity| world.get::<WeatherState>(entity))
-            .cloned()
-            .unwrap_or_default();
+        let weather = ActiveWeather::state(world).cloned().unwrap_or_default();
         let mut changes = Vec::with_capacity(objects.len());
         for ((entity, _), state) in objects.into_iter().zip(self.0) {
             let class = world.get::<SurfaceMaterial>(entity).map_or(SurfaceClass::Roof, |m| m.0);

@@ -28,6 +28,11 @@ impl ActiveWeather {
 }
 
 impl ActiveWeather {
+    /// State of the weather in force.
+    pub(crate) fn state(world: &World) -> Option<&WeatherState> {
+        world.get::<WeatherState>(world.get_resource::<Self>()?.entity()?)
+    }
+
     /// Lets this entity's weather count from now on, until the next tick looks.
     pub(crate) fn restore(&mut self, entity: Entity) {
         self.entity = Some(entity);

@@ -90,14 +90,17 @@ impl Pouring<'_> {
             SpoutForm::Eave { length_m } => {
                 let along = rotation * Vec3::X;
                 let count = eave_mouths(length_m.into());
+                let spacing = length_m / count as f32;
                 for index in 0..count {
-                    let EaveMouth { along_m, share, phase } = eave_mouth(index, count, length_m.into(), key);
-                    let at = place + along * (along_m as f32 - 0.5 * length_m);
-                    let distance = at.distance(eye);
+                    // Where it stands but for a third of the spacing: most far ones go before anything is worked out.
+                    let about = spacing * (index as f32 + 0.5) - 0.5 * length_m;
+                    let distance = (place + along * about).distance(eye);
                     let [seen, weight] = thinned(index, distance);
                     if distance >= SPOUT_REACH_M || seen <= 0.0 || out.len() >= MAX_MOUTHS {
                         continue;
                     }
+                    let EaveMouth { along_m, share, phase } = eave_mouth(index, count, length_m.into(), key);
+                    let at = place + along * (along_m as f32 - 0.5 * length_m);
                     let share = share / f64::from(count);
                     let Some(outflow) = Outflow::of_eave(flow * share) else {
                         continue;
