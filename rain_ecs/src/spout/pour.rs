@@ -43,19 +43,13 @@ pub(super) fn check_spouts(
     }
 }
 
-/// Height of the ground at (x, z). Units: m.
-fn ground_height_m(ground: &Ground, at: DVec2) -> Option<f64> {
-    let height = f64::from(ground.ground_heights()[ground.cell_at(at.x, at.y)?]);
-    height.is_finite().then_some(ground.base_height_m() + height)
-}
-
 /// Where what leaves `mouth` with this velocity lands (x, z); below the mouth where no ground is known.
 fn landing(ground: &Ground, mouth: DVec3, fall: &SpoutFall) -> DVec2 {
     let below = DVec2::new(mouth.x, mouth.z);
     let mut at = below;
     // The ground where it lands may lie higher or lower than that under the mouth.
     for _ in 0..2 {
-        let Some(height) = ground_height_m(ground, at) else {
+        let Some(height) = ground.height_at(at.x, at.y) else {
             break;
         };
         let way = fall.place_m(fall.time_to_fall_s((mouth.y - height).max(0.0)));

@@ -139,11 +139,9 @@ impl FilmPresses {
 }
 
 fn touches(ground: &Ground, place: DVec3, radius_m: f64) -> bool {
-    ground.cell_at(place.x, place.z).is_some_and(|cell| {
-        let height = ground.base_height_m() + f64::from(ground.ground_heights()[cell]);
-        // A hole is never near.
-        (place.y - radius_m - height).abs() <= REACH_M
-    })
+    ground
+        .height_at(place.x, place.z)
+        .is_some_and(|height| (place.y - radius_m - height).abs() <= REACH_M)
 }
 
 /// Presses the film under everything that has moved since the last tick.

@@ -49,10 +49,7 @@ pub(super) struct Pouring<'a> {
 impl Pouring<'_> {
     /// How long what falls from `mouth` may fall.
     fn limit_s(&self, mouth: DVec3, fall: &SpoutFall) -> f64 {
-        let ground = self.ground.and_then(|ground| {
-            let height = f64::from(ground.ground_heights()[ground.cell_at(mouth.x, mouth.z)?]);
-            height.is_finite().then_some(ground.base_height_m() + height)
-        });
+        let ground = self.ground.and_then(|ground| ground.height_at(mouth.x, mouth.z));
         // A little farther: kerbs and hollows beside it.
         let height = ground.map_or(DEEPEST_M, |ground| mouth.y - ground + 0.3);
         fall.time_to_fall_s(height.clamp(0.1, 60.0)).min(10.0)

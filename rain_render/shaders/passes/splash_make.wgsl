@@ -425,7 +425,7 @@ fn mouth_end(mouth: SpoutMouth) -> MouthEnd {
 }
 
 // A piece of a jet between two places, `diameter` m thick, or nothing (shape.w = 0).
-fn jet_piece(a: vec3<f32>, b: vec3<f32>, diameter: f32, weight: f32, fade: f32) -> SplashPart {
+fn jet_piece(a: vec3<f32>, b: vec3<f32>, diameter: f32, fade: f32) -> SplashPart {
     var part: SplashPart;
     let head = view.clip_from_eye * vec4<f32>(a, 1.0);
     let tail = view.clip_from_eye * vec4<f32>(b, 1.0);
@@ -434,7 +434,7 @@ fn jet_piece(a: vec3<f32>, b: vec3<f32>, diameter: f32, weight: f32, fade: f32) 
     }
     let size = diameter * view.focal / (0.5 * (head.w + tail.w));
     let width = max(1.0, size);
-    let opacity = min(1.0, weight * size / width);
+    let opacity = min(1.0, size / width);
     let shown = fade * rain_contrast(opacity, view.contrast);
     if (shown < LEAST_OPACITY) {
         return part;
@@ -450,8 +450,8 @@ fn jet_piece(a: vec3<f32>, b: vec3<f32>, diameter: f32, weight: f32, fade: f32) 
 fn parts_of_mouth(id: u32, index: u32) -> u32 {
     let mouth = mouths[index];
     let place = mouth.place.xyz;
-    let fade = reach_fade(length(place), view.mouth_reach);
-    if (fade <= 0.0 || beside(place, place + mouth_way(mouth, mouth.state.y), 0.5)) {
+    let far = 1.0 - rain_ramp(0.7 * view.mouth_reach, view.mouth_reach, length(place));
+    if (far <= 0.0 || beside(place, place + mouth_way(mouth, mouth.state.y), 0.5)) {
         return 0u;
     }
     let end = mouth_end(mouth);
@@ -465,7 +465,7 @@ fn parts_of_mouth(id: u32, index: u32) -> u32 {
     var parts_found = 0u;
     if (!jets) {
         // What hangs there and grows.
-        var drop = flying(place, place, diameter * pow(gathered, 1.0 / 3.0), 1.0, fade);
+        let drop = flying(place, place, diameter * pow(gathered, 1.0 / 3.0), 1.0, far * rain_ramp(0.1, 0.25, length(place)));
         if (drop.shape.w > 0.0) {
             note(drop, id, 0u);
             parts_found++;
@@ -489,7 +489,8 @@ fn parts_of_mouth(id: u32, index: u32) -> u32 {
             // It swells and shrinks before it breaks.
             let thin = jet_width(mouth, age);
             let swell = 1.0 + 0.7 * clamp(age / breaks, 0.0, 1.0) * (rain_unit(marks.z) - 0.5);
-            part = jet_piece(place + mouth_way(mouth, youngest), place + mouth_way(mouth, until), thin * swell, 1.0, fade);
+            let upper = place + mouth_way(mouth, youngest);
+            part = jet_piece(upper, place + mouth_way(mouth, until), thin * swell, far * rain_ramp(0.1, 0.25, length(upper)));
         } else {
             if (jets) {
                 age = oldest - 0.5 * period;
@@ -501,13 +502,9 @@ fn parts_of_mouth(id: u32, index: u32) -> u32 {
             let aside = 0.03 * (vec2<f32>(rain_unit(marks.y), rain_unit(marks.z)) - 0.5);
             let astray = vec3<f32>(aside.x, 0.0, aside.y);
             let earlier = max(age - view.exposure, 0.0);
-            part = streak_of(
-                place + mouth_way(mouth, age) + age * astray,
-                place + mouth_way(mouth, earlier) + earlier * astray,
-                diameter,
-                mouth.form.w,
-                fade,
-            );
+            let now = place + mouth_way(mouth, age) + age * astray;
+            let before = place + mouth_way(mouth, earlier) + earlier * astray;
+            part = streak_of(now, before, diameter, mouth.form.w, far * rain_ramp(0.1, 0.25, length(now)));
         }
         if (part.shape.w > 0.0) {
             part.light = vec4<f32>(glint * mix(above, below, clamp(age / end.age, 0.0, 1.0)), part.light.w);

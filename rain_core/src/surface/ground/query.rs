@@ -89,6 +89,13 @@ impl Ground {
         self.basins.basins().cell_at(x_m, z_m)
     }
 
+    /// Height of the ground at (x, z); none beside the map and over holes. Units: m.
+    #[must_use]
+    pub fn height_at(&self, x_m: f64, z_m: f64) -> Option<f64> {
+        let height = f64::from(self.heights_f32[self.cell_at(x_m, z_m)?]);
+        height.is_finite().then_some(self.base_m + height)
+    }
+
     /// The water at a place. Not finite or beside the map: on neither layer, no water.
     ///
     /// A place is on the surface that is nearest in height, if that is within 0.5 m; in a pool it is on the ground.

@@ -242,6 +242,32 @@ fn a_jet_goes_its_parabola_thins_and_breaks_into_drops() {
 }
 
 #[test]
+fn an_eye_under_a_mouth_sees_no_drop_that_is_right_before_it() {
+    let scene = Scene {
+        eye_m: DVec3::new(1.0, 2.0, 0.0),
+        ..scene()
+    };
+    let outflow = Outflow::of_eave(1.2e-6).expect("drips");
+    let stream = mouth(&scene, DVec3::new(1.02, 3.0, 0.0), &outflow, Vec3::ZERO);
+    let (mut drawn, mut nearest) = (0, f64::INFINITY);
+    for step in 0..40_u8 {
+        let shifted = SpoutStream {
+            released: 1234.0 + f64::from(step) / 40.0,
+            ..stream
+        };
+        let Some(parts) = parts_of(&scene, &[shifted]) else {
+            return;
+        };
+        for part in parts.iter().filter(|part| part.form[0] == 0.0) {
+            let away = 2.0 - heights(&scene, part)[0];
+            (drawn, nearest) = (drawn + 1, nearest.min(away));
+        }
+    }
+    // Those farther down are seen, the nearest of them beyond a hand's breadth.
+    assert!(drawn > 200 && (0.09..0.2).contains(&nearest), "{drawn}, {nearest} m");
+}
+
+#[test]
 fn a_mouth_at_the_edge_of_a_roof_pours_past_it_to_the_ground() {
     let scene = scene();
     // Just inside the map's last texels of the roof.
