@@ -143,7 +143,9 @@ pub fn test() -> Result<(), u8> {
         .args(WORKSPACE)
         // All that fails is told at once: a run takes minutes.
         .args(["--lib", "--bins", "--tests", "--no-fail-fast"])
-        .env("RAIN_GPU", "required");
+        .env("RAIN_GPU", "required")
+        // With RUST_BACKTRACE set, wgpu-core would take one for every lock; panics have theirs all the same.
+        .env("RUST_LIB_BACKTRACE", "0");
     let mut doc_tests = cargo(&root, "test");
     // The whole workspace: with `-p` features would differ, and Bevy would be compiled once more.
     doc_tests.args(WORKSPACE).arg("--doc");

@@ -8,7 +8,7 @@ use bevy::log::LogPlugin;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::renderer::{RenderAdapterInfo, RenderDevice};
-use bevy::render::settings::RenderCreation;
+use bevy::render::settings::{InstanceFlags, RenderCreation, WgpuSettings};
 use bevy::time::TimeUpdateStrategy;
 use bevy::window::ExitCondition;
 
@@ -26,7 +26,7 @@ pub fn plugins() -> PluginGroupBuilder {
         })
         .set(RenderPlugin {
             synchronous_pipeline_compilation: true,
-            render_creation: RenderCreation::Automatic(Box::default()),
+            render_creation: RenderCreation::Automatic(Box::new(settings())),
             ..default()
         })
         .set(AssetPlugin {
@@ -38,6 +38,14 @@ pub fn plugins() -> PluginGroupBuilder {
             filter: "error,bevy_gltf=error".into(),
             ..default()
         })
+}
+
+/// Bevy's settings without debug information in shaders, unless `WGPU_DEBUG` asks for it: finding the line of every
+/// expression takes a quarter of an app's start.
+fn settings() -> WgpuSettings {
+    let mut settings = WgpuSettings::default();
+    settings.instance_flags = settings.instance_flags.difference(InstanceFlags::DEBUG).with_env();
+    settings
 }
 
 /// Whether a graphics adapter can be had at all; asked before an app is built, because Bevy panics without one.
