@@ -74,8 +74,8 @@ struct RainfallView {
     lead: vec4<f32>,
     // A drop's size over its own by distance d: x + y d + z d2; w: d for a metre.
     size: vec4<f32>,
-    // Width and height, px.
-    viewport: vec2<f32>,
+    // Corner and size of the view in the target, px.
+    viewport: vec4<f32>,
     // Focal length, px.
     focal: f32,
     // Near plane, m.
@@ -93,6 +93,8 @@ struct RainfallView {
     panes: u32,
     // 1: near streaks have a pattern.
     patterned: u32,
+    pad_a: u32,
+    pad_b: u32,
     cover: CoverParams,
     classes: array<RainfallClass, 12>,
     lamp: array<LampParams, 16>,

@@ -17,6 +17,7 @@ pub mod lattice;
 pub mod lens;
 pub mod masks;
 mod overlay;
+mod quad_indices;
 pub mod rainfall;
 pub mod reflection;
 pub mod ring_layers;

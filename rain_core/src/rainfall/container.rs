@@ -9,7 +9,7 @@ use glam::{DVec3, IVec3, Vec3, Vec4};
 
 use super::classes::{SizeClass, visible_range_m};
 use super::detail::DetailLaw;
-use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_marks, drop_place, for_each_drop};
+use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_marks, drop_place, for_each_mark};
 use super::follow::{Follow, FollowSettings};
 use super::local::{CellRain, LocalRain};
 use super::spectrum::Spectrum;
@@ -281,6 +281,8 @@ impl Container {
         let world = |place: Vec3| eye.xz() + place.xz().as_dvec2();
         let cell_m = class.cell_m as f32;
         let reach = (FADE_END * range.at(class.max_mm)) as f32;
+        // A class's smallest drops are drawn as far as this; below it for rounding.
+        let least_reach = (FADE_END * (1.0 - 1e-5) * range.at(class.min_mm)) as f32;
         let low = (lead.min(Vec3::ZERO) - reach) / cell_m + placement.eye.fraction;
         let high = (lead.max(Vec3::ZERO) + reach) / cell_m + placement.eye.fraction;
         let bound = IVec3::splat(CELL_BIAS);
@@ -294,10 +296,14 @@ impl Container {
                     self.cells_visited += 1;
                     let cell = IVec3::new(x, y, z);
                     let centre = (cell.as_vec3() - placement.eye.fraction) * cell_m + half;
-                    if !inside(&view.side_planes, centre, cell_radius + streak) {
+                    if !touches(&view.side_planes, centre, half, streak) {
                         continue;
                     }
-                    let nearest = (to_segment(centre, lead) - cell_radius).max(0.0);
+                    let nearest = if lead == Vec3::ZERO {
+                        centre.clamp(Vec3::splat(-half), Vec3::splat(half)).distance(centre)
+                    } else {
+                        to_segment(centre, lead) - cell_radius
+                    };
                     if nearest > reach {
                         continue;
                     }
@@ -312,20 +318,34 @@ impl Container {
                     self.cells_kept += 1;
                     let key = cell_key(seed, k as u32, placement.eye.cell.wrapping_add(cell));
                     let corner = centre - half;
+                    let all_seen = inside(&view.side_planes, centre, streak + 0.01 - cell_radius);
+                    let whole = match rain {
+                        CellRain::Even(threshold) => threshold.whole_limit(),
+                        _ => -1.0,
+                    };
                     let mut full = false;
-                    for_each_drop(class, key, scan_limit, |index, drop| {
-                        let position = corner + drop.position * cell_m;
-                        let presence = match (rain, local) {
-                            (CellRain::Even(threshold), _) => threshold.presence(&drop),
-                            (CellRain::Uneven(_), Some(local)) => local.presence(k, world(position), &drop),
-                            _ => 0.0,
-                        };
-                        let drop_reach = (FADE_END * range.at(f64::from(drop.diameter_mm))) as f32;
-                        if presence <= 0.0
-                            || to_segment(position, lead) > drop_reach
-                            || !inside(&view.side_planes, position, streak + 0.01)
-                        {
+                    for_each_mark(key, scan_limit, |index, mark| {
+                        // What tells most drops comes first, and what takes long only for drops that it has to tell.
+                        let place = mark.position(key, index);
+                        let position = corner + place * cell_m;
+                        let distance = to_segment(position, lead);
+                        if distance > reach || !(all_seen || inside(&view.side_planes, position, streak + 0.01)) {
                             return;
+                        }
+                        let mut presence = 1.0;
+                        if distance > least_reach || mark.rank > whole {
+                            let drop = mark.drop(class, place);
+                            if distance > (FADE_END * range.at(f64::from(drop.diameter_mm))) as f32 {
+                                return;
+                            }
+                            presence = match (rain, local) {
+                                (CellRain::Even(threshold), _) => threshold.presence(&drop),
+                                (CellRain::Uneven(_), Some(local)) => local.presence(k, world(position), &drop),
+                                _ => 0.0,
+                            };
+                            if presence <= 0.0 {
+                                return;
+                            }
                         }
                         let presence = match region {
                             Some((follow, settings)) => {
@@ -392,6 +412,14 @@ fn to_segment(p: Vec3, lead: Vec3) -> f32 {
         0.0
     };
     (p - lead * t).length()
+}
+
+/// Whether anything of a cube lies inside, with room for what reaches in from a margin.
+fn touches(planes: &[Vec4; 4], centre: Vec3, half: f32, margin: f32) -> bool {
+    planes.iter().all(|plane| {
+        let n = plane.truncate();
+        n.dot(centre) + plane.w >= -margin - 0.01 - half * n.abs().element_sum()
+    })
 }
 
 fn inside(planes: &[Vec4; 4], p: Vec3, margin: f32) -> bool {

@@ -82,6 +82,38 @@ pub fn drop_place(key: [u32; 3], index: u32) -> [u32; 3] {
 /// cells the chance of each count is Poisson's within five standard deviations, places and diameters are as even as
 /// theirs (χ² over 256 bins) within as many.
 pub fn for_each_drop(class: &SizeClass, key: [u32; 3], max_rank: f32, mut visit: impl FnMut(u32, Drop)) {
+    for_each_mark(key, max_rank, |index, mark| {
+        visit(index, mark.drop(class, mark.position(key, index)));
+    });
+}
+
+/// What a drop is known by before anything else is worked out.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DropMark {
+    /// As [`Drop::rank`].
+    pub rank: f32,
+    size: u32,
+}
+
+impl DropMark {
+    /// As [`Drop::position`].
+    pub fn position(self, key: [u32; 3], index: u32) -> Vec3 {
+        let place = drop_place(key, index);
+        Vec3::new(unit_f32(place[0]), unit_f32(place[1]), unit_f32(place[2]))
+    }
+
+    /// All of the drop at a position.
+    pub fn drop(self, class: &SizeClass, position: Vec3) -> Drop {
+        Drop {
+            position,
+            diameter_mm: class.diameter_mm(unit_f32(self.size)),
+            rank: self.rank,
+        }
+    }
+}
+
+/// [`for_each_drop`] for those who need little of most drops.
+pub(super) fn for_each_mark(key: [u32; 3], max_rank: f32, mut visit: impl FnMut(u32, DropMark)) {
     let max_rank = clamped_f32(max_rank, 0.0, MAX_RANK);
     let mut rank = 0.0;
     let mut index = 0;
@@ -91,15 +123,7 @@ pub fn for_each_drop(class: &SizeClass, key: [u32; 3], max_rank: f32, mut visit:
         if rank >= max_rank {
             return;
         }
-        let place = drop_place(key, index);
-        visit(
-            index,
-            Drop {
-                position: Vec3::new(unit_f32(place[0]), unit_f32(place[1]), unit_f32(place[2])),
-                diameter_mm: class.diameter_mm(unit_f32(marks[1])),
-                rank,
-            },
-        );
+        visit(index, DropMark { rank, size: marks[1] });
         index += 1;
     }
 }
@@ -114,7 +138,8 @@ pub struct Threshold {
     scale: f32,
     /// 2 − Λ: slope of ln(N/n_ref). Units: mm⁻¹.
     slope: f32,
-    /// Largest threshold in the class. Units: none.
+    /// Smallest and largest threshold in the class. Units: none.
+    min: f32,
     max: f32,
 }
 
@@ -128,6 +153,7 @@ impl Threshold {
         Self {
             scale,
             slope,
+            min: at(class.min_mm).min(at(class.max_mm)),
             max: at(class.min_mm).max(at(class.max_mm)),
         }
     }
@@ -143,6 +169,7 @@ impl Threshold {
         Self {
             scale: crate::ops::expf(ln_scale),
             slope,
+            min: at(class.min_mm).min(at(class.max_mm)),
             max: at(class.min_mm).max(at(class.max_mm)),
         }
     }
@@ -159,6 +186,11 @@ impl Threshold {
     #[must_use]
     pub fn scan_limit(&self) -> f32 {
         self.max * (1.0 + SOFT_EDGE)
+    }
+
+    /// Up to this rank every drop of the class is there wholly, whatever its diameter; a little lower, for rounding.
+    pub(super) fn whole_limit(&self) -> f32 {
+        self.min * (1.0 - 1.002 * SOFT_EDGE)
     }
 
     /// Presence of a drop, 0…1: 1 inside, a soft ramp at its own threshold, so that nothing pops when rain changes.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::atomic::Ordering::Relaxed;
 
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
-use bevy::math::{DVec3, Mat4, Vec2, Vec3, Vec3Swizzles as _};
+use bevy::math::{DVec3, Mat4, Vec3, Vec3Swizzles as _};
 use bevy::prelude::*;
 use bevy::render::camera::ExtractedCamera;
 use bevy::render::render_asset::RenderAssets;
@@ -415,7 +415,6 @@ pub(super) fn prepare_rain(
     for ((entity, main), view, camera, rain, prepass, msaa) in &views {
         let eye = view.world_from_view.translation();
         let rotation = view.world_from_view.rotation();
-        let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32);
         let scene_depth: Option<&wgpu::TextureView> = match (msaa, prepass.and_then(ViewPrepassTextures::depth_view)) {
             (Msaa::Off, Some(depth)) => Some(depth),
             _ => None,
@@ -459,7 +458,7 @@ pub(super) fn prepare_rain(
             clip_from_eye_before: view.clip_from_view * before,
             eye_height_m: eye.y,
             eye_velocity_m_s: rain.motion.velocity_m_s.as_vec3(),
-            viewport_px: size,
+            viewport_px: Vec4::from_array(view.viewport.as_vec4().to_array()),
             focal_px: rain.focal_px,
             near_m: near,
             shutter: rain_render::rainfall::Shutter { soft_m, ..shutter },

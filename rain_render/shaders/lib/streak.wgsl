@@ -42,6 +42,11 @@ fn rain_quad_corner(vertex: u32) -> vec2<f32> {
     return vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
 }
 
+// The same of a quad whose two triangles share vertices: the first four numbers are its corners.
+fn rain_shared_corner(vertex: u32) -> vec2<f32> {
+    return vec2<f32>(f32(vertex & 1u), f32(vertex >> 1u & 1u)) * 2.0 - 1.0;
+}
+
 // A corner of the quad that shows a streak, px.
 struct StreakCorner {
     pixel: vec2<f32>,

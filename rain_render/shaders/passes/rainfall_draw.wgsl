@@ -1,5 +1,5 @@
-// Streaks as screen-space quads, six vertices each, pulled from the projected list: all but those with a pattern. Few numbers
-// go from vertices to fragments: thin streaks spend most of their time on them.
+// Streaks as screen-space quads of four corners, pulled from the projected list: all but those with a pattern. Few numbers
+// go from corners to fragments: thin streaks spend most of their time on them.
 
 @group(0) @binding(0) var<uniform> view: RainfallView;
 @group(0) @binding(1) var<storage, read> streaks: array<Streak>;
@@ -10,46 +10,71 @@ override SOFT: bool = true;
 // Whether coverage is drawn instead of light.
 override COVERAGE: bool = false;
 
+// What lies before an end by more than this many lengths of the fade is something else than what the streak meets: the
+// depth test leaves out what it hides, and the rest fades as the other end does.
+const MEETS: f32 = 1.0;
+// Far from anything; keeps the numbers between the ends exact.
+const CLEAR: f32 = 1e4;
+
 struct EvenVertex {
     @builtin(position) position: vec4<f32>,
-    // Across and along the streak; half its width and length and half a pixel, px.
-    @location(0) strip: vec4<f32>,
-    // Light and opacity, or coverage, in its middle.
-    @location(1) @interpolate(flat) whole: vec4<f32>,
+    // Across and along the streak, px; distance to the scene behind in lengths of the fade.
+    @location(0) @interpolate(linear) strip: vec3<f32>,
+    // Light and opacity, or coverage, in its middle, as halves; half its width and length and half a pixel, px.
+    @location(1) @interpolate(flat) whole: vec4<u32>,
+}
+
+// Distance to the scene behind an end; between both ends it goes on a straight line, as it does before planes.
+fn gap_at(end: vec2<f32>, depth: f32) -> f32 {
+    let inside = clamp(end, vec2<f32>(0.0), view.viewport.zw - 1.0);
+    return clamp(gap_before_scene(inside + view.viewport.xy, depth), -MEETS, CLEAR);
 }
 
 // A corner of a streak of this half width; nothing of one that has none, or a pattern.
 fn corner(streak: Streak, half: f32, vertex_index: u32) -> EvenVertex {
     if (half <= 0.0 || has_pattern(half)) {
-        return EvenVertex(no_corner().position, vec4<f32>(0.0), vec4<f32>(0.0));
+        return EvenVertex(no_corner().position, vec3<f32>(0.0), vec4<u32>(0u));
     }
-    let quad = streak_corner(streak, half, 1.0, vertex_index);
-    let light = vec4<f32>(quad.light.rgb * quad.light.a, quad.light.a);
-    let whole = select(light, vec4<f32>(quad.coverage, 0.0, 0.0, quad.coverage), COVERAGE);
-    return EvenVertex(quad.position, vec4<f32>(quad.local, 0.5 + 0.5 * quad.size), whole);
+    let at = rain_shared_corner(vertex_index);
+    let quad = rain_streak_corner(streak.ends, half, at);
+    var gap = 1.0;
+    if (SOFT) {
+        let head = gap_at(streak.ends.xy, streak.shape.x);
+        let tail = gap_at(streak.ends.zw, streak.shape.y);
+        let own = select(head, tail, at.y > 0.0);
+        gap = select(own, max(head, tail), own <= -MEETS);
+    }
+    // Halves end at 65504.
+    let light = vec4<f32>(min(streak.light.rgb, vec3<f32>(65000.0)), 1.0) * streak.shape.w;
+    let whole = select(light, vec4<f32>(streak.light.w, 0.0, 0.0, streak.light.w), COVERAGE);
+    return EvenVertex(
+        vec4<f32>(ndc_of(quad.pixel), mix(streak.shape.x, streak.shape.y, quad.along), 1.0),
+        vec3<f32>(quad.local, gap),
+        vec4<u32>(pack2x16float(whole.rg), pack2x16float(whole.ba), bitcast<vec2<u32>>(0.5 + 0.5 * quad.size)),
+    );
 }
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32) -> EvenVertex {
-    let streak = streaks[vertex_index / 6u];
+    let streak = streaks[vertex_index / 4u];
     return corner(streak, streak.shape.z, vertex_index);
 }
 
 // Those behind what is transparent.
 @vertex
 fn vertex_behind(@builtin(vertex_index) vertex_index: u32) -> EvenVertex {
-    let streak = streaks[vertex_index / 6u];
+    let streak = streaks[vertex_index / 4u];
     return corner(streak, -streak.shape.z, vertex_index);
 }
 
 // As rain_strip has it, along both axes.
 fn shown(in: EvenVertex) -> vec4<f32> {
-    let inside = clamp(in.strip.zw - abs(in.strip.xy), vec2<f32>(0.0), vec2<f32>(1.0));
+    let inside = clamp(bitcast<vec2<f32>>(in.whole.zw) - abs(in.strip.xy), vec2<f32>(0.0), vec2<f32>(1.0));
     var presence = inside.x * inside.y;
     if (SOFT) {
-        presence *= before_scene(in.position);
+        presence *= clamp(in.strip.z, 0.0, 1.0);
     }
-    return in.whole * presence;
+    return vec4<f32>(unpack2x16float(in.whole.x), unpack2x16float(in.whole.y)) * presence;
 }
 
 @fragment

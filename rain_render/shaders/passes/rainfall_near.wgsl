@@ -36,14 +36,14 @@ fn corner(which: u32, half: f32, vertex_index: u32) -> NearVertex {
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32) -> NearVertex {
-    let which = listed[vertex_index / 6u];
+    let which = listed[vertex_index / 4u];
     return corner(which, streaks[which].shape.z, vertex_index);
 }
 
 // Those behind what is transparent.
 @vertex
 fn vertex_behind(@builtin(vertex_index) vertex_index: u32) -> NearVertex {
-    let which = listed[vertex_index / 6u];
+    let which = listed[vertex_index / 4u];
     return corner(which, -streaks[which].shape.z, vertex_index);
 }
 
@@ -110,9 +110,9 @@ fn pattern(which: u32, local: vec2<f32>) -> vec4<f32> {
     let up = cross(right, from_eye);
     var clip = view.clip_from_eye * vec4<f32>(middle, 1.0);
     let deep = max(clip.w, max(view.near, 0.02));
-    let at = rain_pixel(vec4<f32>(clip.xyz, deep), view.viewport);
-    let aside = rain_pixel(vec4<f32>((clip + view.clip_from_eye * vec4<f32>(0.01 * right, 0.0)).xyz, deep), view.viewport);
-    let above = rain_pixel(vec4<f32>((clip + view.clip_from_eye * vec4<f32>(0.01 * up, 0.0)).xyz, deep), view.viewport);
+    let at = rain_pixel(vec4<f32>(clip.xyz, deep), view.viewport.zw);
+    let aside = rain_pixel(vec4<f32>((clip + view.clip_from_eye * vec4<f32>(0.01 * right, 0.0)).xyz, deep), view.viewport.zw);
+    let above = rain_pixel(vec4<f32>((clip + view.clip_from_eye * vec4<f32>(0.01 * up, 0.0)).xyz, deep), view.viewport.zw);
     let axes = mat2x2<f32>(normalize(aside - at), normalize(above - at));
 
     let path = streak.ends.zw - streak.ends.xy;

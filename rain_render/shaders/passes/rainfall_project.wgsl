@@ -7,6 +7,26 @@
 @group(0) @binding(4) var environment: texture_cube<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
 
+// Drops are tested against the cover map: 0 not at all, 1 where all fall straight down, 2 else.
+override COVER: u32 = 2u;
+// Whether there are lamps, and things that are transparent.
+override LAMPS: bool = true;
+override PANES: bool = true;
+
+// Whether a drop is under a roof or has met one in the exposure.
+fn sheltered(p: vec3<f32>, before: vec3<f32>, inverse_speed: f32) -> bool {
+    if (COVER == 0u) {
+        return false;
+    }
+    if (COVER == 1u) {
+        // What `rain_covered` comes to where its rays are upright: it has been right above the drop all the time.
+        return rain_cover_height(cover_map, view.cover, p.xz) > p.y + 0.02;
+    }
+    return rain_inside_building(cover_map, view.cover, p)
+        || rain_covered(cover_map, view.cover, p, inverse_speed)
+        || rain_covered(cover_map, view.cover, before, inverse_speed);
+}
+
 fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
     var light = rain_drop_shine(
         environment,
@@ -17,13 +37,18 @@ fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
         view.sun.rgb,
         normalize(place),
     );
-    for (var i = 0u; i < view.lamps; i++) {
-        light += rain_lamp_radiance(view.lamp[i], place);
+    if (LAMPS) {
+        for (var i = 0u; i < view.lamps; i++) {
+            light += rain_lamp_radiance(view.lamp[i], place);
+        }
     }
     return light;
 }
 
 fn behind_glass(place: vec3<f32>) -> bool {
+    if (!PANES) {
+        return false;
+    }
     for (var i = 0u; i < view.panes; i++) {
         if (rain_behind_pane(view.pane[i], place)) {
             return true;
@@ -59,9 +84,7 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
     var tail = view.clip_from_eye_before * vec4<f32>(before, 1.0);
     let near = max(view.near, 0.02);
     if (weight <= 0.0 || (head.w < near && tail.w < near)
-        || rain_inside_building(cover_map, view.cover, p)
-        || rain_covered(cover_map, view.cover, p, k.velocity.w)
-        || rain_covered(cover_map, view.cover, before, k.velocity.w)) {
+        || sheltered(p, before, k.velocity.w)) {
         streaks[id.x] = out;
         return;
     }
@@ -75,8 +98,8 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
     let d = min(length(p) * view.size.w, 1.0);
     let larger = view.size.x + d * (view.size.y + d * view.size.z);
     let size = larger * diameter_mm * 1e-3 * view.focal / distance;
-    let a = rain_pixel(head, view.viewport);
-    let b = rain_pixel(tail, view.viewport);
+    let a = rain_pixel(head, view.viewport.zw);
+    let b = rain_pixel(tail, view.viewport.zw);
     let width = max(1.0, size);
     let span = max(1.0, length(b - a) + size);
     // Off the axis a flat picture draws a sphere out to an ellipse.

@@ -5,8 +5,10 @@ use crate::overlay::OverlayKey;
 
 /// Places, covers and projects this frame's drops.
 pub fn encode_project(pass: &mut wgpu::ComputePass, gpu: &RainfallGpu, view: &RainfallViewGpu) {
-    let Some(bind_group) = &view.project else { return };
-    pass.set_pipeline(&gpu.project);
+    let (Some(bind_group), Some(pipeline)) = (&view.project, gpu.project.get(view.needs)) else {
+        return;
+    };
+    pass.set_pipeline(pipeline);
     pass.set_bind_group(0, bind_group, &[]);
     pass.dispatch_workgroups(view.drops.div_ceil(64), 1, 1);
 }
@@ -48,8 +50,8 @@ fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu
     if let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key.soft(view.soft))) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, bind_group, &[]);
-        // One big vertex-pulling draw: tiny instances waste most of a SIMD batch.
-        pass.draw(0..6 * view.drops, 0..1);
+        // Big vertex-pulling draws: tiny instances waste most of a SIMD batch.
+        gpu.quads.draw(pass, view.drops);
     }
     if view.near_drops.is_empty() {
         return;
@@ -58,6 +60,6 @@ fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu
     if let (Some(bind_group), Some(pipeline)) = (&view.near, gpu.near.get(key)) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, bind_group, &[]);
-        pass.draw(0..6 * view.near_drops.len() as u32, 0..1);
+        gpu.quads.draw(pass, view.near_drops.len() as u32);
     }
 }

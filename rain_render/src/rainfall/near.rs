@@ -1,6 +1,6 @@
 //! Which drops may be so near that their streaks have a pattern.
 
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Vec3, Vec4Swizzles as _};
 use rain_core::rainfall::SizeClass;
 
 use super::RainfallInput;
@@ -18,7 +18,7 @@ pub(super) fn near_drops(input: &RainfallInput, drops: &mut Vec<u32>) {
     if !input.shutter.patterned {
         return;
     }
-    let half_view = input.viewport_px / (2.0 * input.focal_px.max(1.0));
+    let half_view = input.viewport_px.zw() / (2.0 * input.focal_px.max(1.0));
     let secant = (1.0 + half_view.length_squared()).sqrt();
     let larger = input.shutter.detail.map_or(1.0, |law| {
         let [even, linear, square] = law.size_terms();
@@ -68,7 +68,7 @@ pub(super) fn near_drops(input: &RainfallInput, drops: &mut Vec<u32>) {
 
 #[cfg(test)]
 mod tests {
-    use glam::{Mat4, Vec2};
+    use glam::{Mat4, Vec4};
     use rain_core::rainfall::{Container, Distribution, FieldMotion, RainViewVolume, Spectrum};
 
     use super::*;
@@ -97,7 +97,7 @@ mod tests {
             clip_from_eye_before: Mat4::IDENTITY,
             eye_height_m: 1.7,
             eye_velocity_m_s: Vec3::ZERO,
-            viewport_px: Vec2::new(1280.0, 720.0),
+            viewport_px: Vec4::new(0.0, 0.0, 1280.0, 720.0),
             focal_px: 700.0,
             near_m: 0.1,
             shutter: Shutter {

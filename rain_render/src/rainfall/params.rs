@@ -1,6 +1,6 @@
 //! Plain inputs of the pass and how they become the uniform.
 
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, Vec3, Vec4};
 use rain_core::hash::pcg3d;
 use rain_core::rainfall::{CLASS_COUNT, Container, DetailLaw, LEAD_CAP_M, LEAD_TIME_S, Lamp, RANGE_CAP_M, SizeClass};
 
@@ -56,8 +56,8 @@ pub struct RainfallInput<'a> {
     pub eye_height_m: f32,
     /// Velocity of the eye. Units: m/s.
     pub eye_velocity_m_s: Vec3,
-    /// Size of the target. Units: px.
-    pub viewport_px: Vec2,
+    /// Corner and size of the view in the target. Units: px.
+    pub viewport_px: Vec4,
     /// Focal length. Units: px.
     pub focal_px: f32,
     /// Near plane of the projection. Units: m.
@@ -119,6 +119,8 @@ impl RainfallInput<'_> {
             lamps,
             panes,
             patterned: u32::from(self.shutter.patterned),
+            pad_a: 0,
+            pad_b: 0,
             cover: self.cover,
             classes,
             lamp,

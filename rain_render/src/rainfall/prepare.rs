@@ -1,13 +1,12 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
-use crate::bindings::{
-    compute_pipeline, linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry,
-};
-use crate::compose;
+use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::gpu_types::{RainfallView, Streak};
 use crate::overlay::{Overlay, OverlayKey};
+use crate::quad_indices::QuadIndices;
 use crate::rainfall::RainfallInput;
 use crate::rainfall::near::near_drops;
+use crate::rainfall::project::{Project, ProjectKey};
 
 /// Format of the coverage mask: blendable everywhere.
 pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
@@ -18,10 +17,10 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
 pub struct RainfallGpu {
-    pub(super) project_layout: wgpu::BindGroupLayout,
-    pub(super) project: wgpu::ComputePipeline,
+    pub(super) project: Project,
     pub(super) draw: Overlay,
     pub(super) near: Overlay,
+    pub(super) quads: QuadIndices,
     no_depth: wgpu::TextureView,
     no_environment: wgpu::TextureView,
     sampler: wgpu::Sampler,
@@ -65,40 +64,22 @@ pub struct RainfallViewGpu {
     /// Which records may have a streak with a pattern, and as many words for them.
     pub(super) near_drops: Vec<u32>,
     near_list: wgpu::Buffer,
+    pub(super) needs: ProjectKey,
     pub(super) project: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
     pub(super) near: Option<wgpu::BindGroup>,
 }
 
 impl RainfallGpu {
-    /// Builds the layouts and the projection pipeline.
+    /// Builds the layouts.
     #[must_use]
     pub fn new(device: &wgpu::Device) -> Self {
-        let compute = wgpu::ShaderStages::COMPUTE;
         let depth = wgpu::TextureSampleType::Depth;
-        let project_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("rain rainfall project"),
-            entries: &[
-                uniform_entry(0, compute, size_of::<RainfallView>()),
-                storage_entry(1, compute, true),
-                storage_entry(2, compute, false),
-                texture_entry(3, compute, depth, wgpu::TextureViewDimension::D2),
-                texture_entry(
-                    4,
-                    compute,
-                    wgpu::TextureSampleType::Float { filterable: true },
-                    wgpu::TextureViewDimension::Cube,
-                ),
-                sampler_entry(5, compute),
-            ],
-        });
-        let module = compose::shader(device, "rainfall_project");
-        let project = compute_pipeline(device, "rain rainfall project", &module, "project", &[&project_layout]);
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let even = [
             uniform_entry(0, raster, size_of::<RainfallView>()),
             storage_entry(1, raster, true),
-            texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
+            texture_entry(2, raster, depth, wgpu::TextureViewDimension::D2),
         ];
         let draw = Overlay::new(device, "rain rainfall draw", "rainfall_draw", &even)
             .with_constants(|key| vec![("SOFT", f64::from(key.soft)), ("COVERAGE", f64::from(key.coverage))]);
@@ -123,10 +104,10 @@ impl RainfallGpu {
             ],
         );
         Self {
-            project_layout,
-            project,
+            project: Project::new(device),
             draw,
             near,
+            quads: QuadIndices::new(device),
             no_depth: one_texel(device, "rain no depth", DEPTH_FORMAT, 1),
             no_environment: one_texel(device, "rain no environment", wgpu::TextureFormat::Rgba8Unorm, 6),
             sampler: linear_sampler(device, "rain environment", wgpu::AddressMode::ClampToEdge),
@@ -175,6 +156,7 @@ impl RainfallViewGpu {
             soft: false,
             near_drops: Vec::new(),
             near_list,
+            needs: ProjectKey::default(),
             project: None,
             draw: None,
             near: None,
@@ -223,6 +205,8 @@ impl RainfallViewGpu {
         let uniform = input.uniform();
         self.panes = uniform.panes;
         self.soft = uniform.soft > 0.0;
+        self.needs = ProjectKey::of(input, &uniform);
+        gpu.project.prepare(device, self.needs);
         near_drops(input, &mut self.near_drops);
         if records.len() > self.capacity {
             self.capacity = records.len().next_power_of_two();
@@ -246,7 +230,7 @@ impl RainfallViewGpu {
         let environment = view(textures.environment, &gpu.no_environment);
         self.project = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain rainfall project"),
-            layout: &gpu.project_layout,
+            layout: &gpu.project.layout,
             entries: &[
                 entry(0, self.uniform.as_entire_binding()),
                 entry(1, self.records.as_entire_binding()),

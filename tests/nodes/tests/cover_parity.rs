@@ -19,9 +19,9 @@ const ROOFS: [[f64; 5]; 6] = [
 ];
 
 const TEXELS: u32 = 512;
-const EYE: DVec3 = DVec3::new(0.7, 1.7, -0.4);
+pub const EYE: DVec3 = DVec3::new(0.7, 1.7, -0.4);
 
-fn placement() -> CoverPlacement {
+pub fn placement() -> CoverPlacement {
     CoverPlacement {
         centre_m: DVec2::new(1.0, 0.5),
         plane_m: 2.0,
@@ -49,7 +49,7 @@ fn met(p: &CoverPlacement, q: DVec2) -> Option<f64> {
 }
 
 /// The map as heights above sea level, row by row; `None`: nothing there.
-fn heights(p: &CoverPlacement) -> Vec<Option<f64>> {
+pub fn heights(p: &CoverPlacement) -> Vec<Option<f64>> {
     let texel = p.extent_m / f64::from(TEXELS);
     let corner = p.centre_m - 0.5 * p.extent_m;
     (0..TEXELS * TEXELS)
@@ -63,7 +63,7 @@ fn heights(p: &CoverPlacement) -> Vec<Option<f64>> {
 }
 
 /// Draws the heights into a depth texture, as a host would.
-fn depth_map(gpu: &Device, p: &CoverPlacement, heights: &[Option<f64>]) -> wgpu::TextureView {
+pub fn depth_map(gpu: &Device, p: &CoverPlacement, heights: &[Option<f64>]) -> wgpu::TextureView {
     let depth: Vec<f32> = heights
         .iter()
         .map(|h| h.map_or(0.0, |h| (1.0 - (p.top_m - h) / p.range_m) as f32))

@@ -104,7 +104,7 @@ impl FieldView {
             clip_from_eye_before: now * Mat4::from_translation(shift),
             eye_height_m: self.eye_m.y as f32,
             eye_velocity_m_s: self.eye_velocity_m_s.as_vec3(),
-            viewport_px: self.size,
+            viewport_px: Vec4::new(0.0, 0.0, self.size.x, self.size.y),
             focal_px: self.focal_px(),
             near_m: 0.05,
             shutter: Shutter {

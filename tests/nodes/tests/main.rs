@@ -23,6 +23,7 @@ mod reflection;
 mod ring_layers;
 mod shader_functions;
 mod slope_mips;
+mod soft_streaks;
 mod splash;
 mod streak_textures;
 mod water;

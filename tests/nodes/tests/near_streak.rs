@@ -10,9 +10,9 @@ use rain_render::rainfall::{
 use crate::device::{Device, device};
 use crate::field_parity::FieldView;
 
-const SIDE: u32 = 512;
+pub const SIDE: u32 = 512;
 const SEED: u64 = 5;
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// A long lens: a drop of 3 mm at 0.8 m is 19 px wide.
 fn close() -> FieldView {
@@ -119,7 +119,7 @@ fn sky(gpu: &Device) -> wgpu::TextureView {
     })
 }
 
-fn attachment(gpu: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+pub fn attachment(gpu: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d {
@@ -137,7 +137,7 @@ fn attachment(gpu: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
 }
 
 /// A half float that is neither infinite nor NaN.
-fn half(bits: u16) -> f32 {
+pub fn half(bits: u16) -> f32 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023) / 1024.0);
     let size = if exponent == 0 {
         fraction * 2.0_f32.powi(-14)

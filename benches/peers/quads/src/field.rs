@@ -248,7 +248,7 @@ pub fn input(container: &Container, seed: u64, kappa: f32, soft_m: f32) -> Rainf
         clip_from_eye_before: clip_from_eye(),
         eye_height_m: 1.7,
         eye_velocity_m_s: Vec3::ZERO,
-        viewport_px: Vec2::new(SIZE[0] as f32, SIZE[1] as f32),
+        viewport_px: Vec4::new(0.0, 0.0, SIZE[0] as f32, SIZE[1] as f32),
         focal_px: focal_px(),
         near_m: NEAR_M,
         shutter: Shutter {

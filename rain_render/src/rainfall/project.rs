@@ -1,0 +1,114 @@
+//! Pipelines of the projection, each with only what its view needs: masked-off code is not free on every device.
+
+use std::sync::OnceLock;
+
+use super::RainfallInput;
+use crate::bindings::{compute_pipeline_with, sampler_entry, storage_entry, texture_entry, uniform_entry};
+use crate::compose;
+use crate::gpu_types::RainfallView;
+
+/// How drops are tested against the cover map: `COVER` of `shaders/passes/rainfall_project.wgsl`.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+enum CoverTest {
+    /// There is no map.
+    #[default]
+    Open,
+    /// Everything falls straight down: one look-up tells.
+    Straight,
+    /// Rain is driven by wind.
+    Driven,
+}
+
+/// What the projections of views differ by.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub(super) struct ProjectKey {
+    cover: CoverTest,
+    lamps: bool,
+    panes: bool,
+}
+
+impl ProjectKey {
+    /// What a view needs.
+    pub fn of(input: &RainfallInput, view: &RainfallView) -> Self {
+        let falls = |v: glam::Vec3| v.x == 0.0 && v.z == 0.0;
+        let straight =
+            view.cover.wind == [0.0; 2] && input.container.classes.iter().all(|class| falls(class.velocity_m_s));
+        Self {
+            cover: match (view.cover.present < 0.5, straight) {
+                (true, _) => CoverTest::Open,
+                (false, true) => CoverTest::Straight,
+                (false, false) => CoverTest::Driven,
+            },
+            lamps: view.lamps > 0,
+            panes: view.panes > 0,
+        }
+    }
+
+    fn index(self) -> usize {
+        4 * self.cover as usize + 2 * usize::from(self.lamps) + usize::from(self.panes)
+    }
+}
+
+/// The projection's layout, and its pipelines, made when a view first needs them.
+#[derive(Debug)]
+pub(super) struct Project {
+    pub layout: wgpu::BindGroupLayout,
+    module: wgpu::ShaderModule,
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 12],
+}
+
+impl Project {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("rain rainfall project"),
+            entries: &[
+                uniform_entry(0, compute, size_of::<RainfallView>()),
+                storage_entry(1, compute, true),
+                storage_entry(2, compute, false),
+                texture_entry(
+                    3,
+                    compute,
+                    wgpu::TextureSampleType::Depth,
+                    wgpu::TextureViewDimension::D2,
+                ),
+                texture_entry(
+                    4,
+                    compute,
+                    wgpu::TextureSampleType::Float { filterable: true },
+                    wgpu::TextureViewDimension::Cube,
+                ),
+                sampler_entry(5, compute),
+            ],
+        });
+        Self {
+            layout,
+            module: compose::shader(device, "rainfall_project"),
+            pipelines: Default::default(),
+        }
+    }
+
+    /// Makes sure that the pipeline exists.
+    pub fn prepare(&self, device: &wgpu::Device, key: ProjectKey) {
+        if let Some(slot) = self.pipelines.get(key.index()) {
+            slot.get_or_init(|| {
+                compute_pipeline_with(
+                    device,
+                    "rain rainfall project",
+                    &self.module,
+                    "project",
+                    &[&self.layout],
+                    &[
+                        ("COVER", key.cover as u32 as f64),
+                        ("LAMPS", f64::from(key.lamps)),
+                        ("PANES", f64::from(key.panes)),
+                    ],
+                )
+            });
+        }
+    }
+
+    pub fn get(&self, key: ProjectKey) -> Option<&wgpu::ComputePipeline> {
+        self.pipelines.get(key.index())?.get()
+    }
+}
