@@ -68,10 +68,7 @@ fn the_ground_is_dark_where_it_has_rained_and_stays_so_when_the_shower_is_gone()
     }
     for map in [true, false] {
         let mut test = plain(0);
-        test.world().insert_resource(GroundMapSettings {
-            enabled: map,
-            ..default()
-        });
+        test.world().resource_mut::<GroundMapSettings>().enabled = map;
         test.look(Vec3::new(0.0, 16.0, 0.0), Vec3::ZERO);
         settle(&mut test);
         let places = [(2.5, 0.5), (-3.5, 0.5), (2.5, 4.5)];

@@ -22,13 +22,21 @@ fn humid(intensity_mm_h: f64) -> Weather {
     }
 }
 
-/// Level ground seen from straight above, its simulation built, under a dry sky.
-fn from_above(map: bool) -> (TestApp, Entity) {
+/// Level ground seen from straight above, its simulation built, under a dry sky, with a map of the default's size.
+fn from_above() -> (TestApp, Entity) {
+    with_map(GroundMapSettings::default())
+}
+
+/// A map of half the default's side, wide enough for the whole picture.
+fn small_map() -> GroundMapSettings {
+    let mut settings = GroundMapSettings::default();
+    settings.map.texels = 256;
+    settings
+}
+
+fn with_map(settings: GroundMapSettings) -> (TestApp, Entity) {
     let mut test = TestApp::new([SIZE, SIZE], true);
-    test.world().insert_resource(GroundMapSettings {
-        enabled: map,
-        ..default()
-    });
+    test.world().insert_resource(settings);
     world::ground(test.world());
     let weather = test.world().spawn(humid(0.0)).id();
     let camera = test.camera;
@@ -59,8 +67,12 @@ fn brightness(picture: &RgbImage, x: f32, z: f32) -> f64 {
 
 /// Rain for so many steps of five seconds.
 fn rain(test: &mut TestApp, weather: Entity, intensity_mm_h: f64, steps: u32) {
+    rain_in_steps_of(test, weather, intensity_mm_h, steps, 5);
+}
+
+fn rain_in_steps_of(test: &mut TestApp, weather: Entity, intensity_mm_h: f64, steps: u32, seconds: u64) {
     test.world().entity_mut(weather).insert(humid(intensity_mm_h));
-    test.frames(steps, Duration::from_secs(5));
+    test.frames(steps, Duration::from_secs(seconds));
     test.frames(2, FRAME);
 }
 
@@ -72,7 +84,10 @@ fn a_truck_that_leaves_uncovers_a_dry_patch_that_stays_until_it_rains_on_it() {
     // The patch against the ground beside it: after the truck has left, a quarter of an hour later without rain, and
     // after more rain.
     let differences = |map: bool| {
-        let (mut test, weather) = from_above(map);
+        let (mut test, weather) = with_map(GroundMapSettings {
+            enabled: map,
+            ..small_map()
+        });
         let truck = world::block(
             test.world(),
             "truck",
@@ -86,8 +101,8 @@ fn a_truck_that_leaves_uncovers_a_dry_patch_that_stays_until_it_rains_on_it() {
         test.world().despawn(truck);
         test.frames(4, FRAME);
         let mut seen = Vec::new();
-        for (intensity_mm_h, steps) in [(0.0, 1), (0.0, 180), (40.0, 60)] {
-            rain(&mut test, weather, intensity_mm_h, steps);
+        for (intensity_mm_h, steps, seconds) in [(0.0, 1, 5), (0.0, 30, 30), (40.0, 60, 5)] {
+            rain_in_steps_of(&mut test, weather, intensity_mm_h, steps, seconds);
             let picture = test.picture();
             seen.push((brightness(&picture, 0.0, 0.0) - brightness(&picture, 4.0, 0.0)).abs());
         }
@@ -110,7 +125,7 @@ fn a_dry_patch_is_seen_by_a_second_view_that_is_near_the_first_and_not_by_one_fa
     }
     // The second view stays where it is, five metres from the patch, which lies 24 or 29 m from the first.
     let patch = |first: f32| {
-        let (mut test, weather) = from_above(true);
+        let (mut test, weather) = from_above();
         test.look(Vec3::new(first, 16.0, 0.0), Vec3::new(first, 0.0, 0.0));
         let target = target_image(&mut test.app, [SIZE, SIZE]);
         let second = spawn_camera(&mut test.app, &target, true);
@@ -148,7 +163,7 @@ fn a_wheels_track_on_a_wet_road_is_seen_and_fills_again() {
     if !gpu::available() {
         return;
     }
-    let (mut test, weather) = from_above(true);
+    let (mut test, weather) = with_map(small_map());
     rain(&mut test, weather, 20.0, 180);
     rain(&mut test, weather, 0.0, 1);
     let mut press = FilmPress::wheel(0.3);
@@ -219,7 +234,7 @@ fn the_map_is_recorded_when_something_changes_and_says_why_not_otherwise() {
     if !gpu::available() {
         return;
     }
-    let (mut test, weather) = from_above(true);
+    let (mut test, weather) = from_above();
     test.reset();
     test.frames(20, FRAME);
     assert_eq!(test.recorded(PassName::WaterMap), 0, "dry");
@@ -291,7 +306,7 @@ fn the_map_lies_around_the_leading_view_of_those_far_apart() {
     if !gpu::available() {
         return;
     }
-    let (mut test, weather) = from_above(true);
+    let (mut test, weather) = from_above();
     rain(&mut test, weather, 20.0, 60);
     assert!(finest(&test, 12.0) && !finest(&test, 24.0));
     // A second view too far away for one map: it is the leading view's, whichever was made first.

@@ -47,6 +47,10 @@ impl TestApp {
         app.add_plugins(headless::plugins());
         if rain {
             app.add_plugins(RainPlugins);
+            // Half of the default's side: these scenes are small, and each step works on every texel.
+            let mut ground_map = GroundMapSettings::default();
+            ground_map.map.texels = 256;
+            app.insert_resource(ground_map);
         }
         headless::finish(&mut app);
         app.init_resource::<Pictured>();
