@@ -189,7 +189,7 @@ pub struct Container {
 impl Container {
     /// Fills the container for one view. At most `max_drops` records are written; a cut is reported by `false`.
     ///
-    /// Error: the drops are those of [`for_each_drop`] within reach and view, save within 1e-4 m of their borders;
+    /// Error: the drops are those of [`for_each_drop`](super::for_each_drop) within reach and view, save within 1e-4 m of their borders;
     /// positions 1e-5 m, presence 1e-4.
     ///
     /// An eye that is not finite stands at the origin of every class, one whose velocity is not finite stands still; a
