@@ -31,3 +31,9 @@ fn rain_drop_shine(
     let theta = acos(clamp(dot(from_eye, sun_direction), -1.0, 1.0));
     return rain_drop_radiance(refracted, reflected, sun, theta);
 }
+
+// The same where the surroundings are even.
+fn rain_drop_shine_evenly(ambient: vec4<f32>, sun_direction: vec3<f32>, sun: vec3<f32>, from_eye: vec3<f32>) -> vec3<f32> {
+    let theta = acos(clamp(dot(from_eye, sun_direction), -1.0, 1.0));
+    return rain_drop_radiance(ambient.rgb, ambient.rgb, sun, theta);
+}

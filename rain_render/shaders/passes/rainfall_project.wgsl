@@ -9,7 +9,8 @@
 
 // Drops are tested against the cover map: 0 not at all, 1 where all fall straight down, 2 else.
 override COVER: u32 = 2u;
-// Whether there are lamps, and things that are transparent.
+// Whether there are an environment map, lamps, and things that are transparent.
+override ENVIRONMENT: bool = true;
 override LAMPS: bool = true;
 override PANES: bool = true;
 
@@ -28,15 +29,19 @@ fn sheltered(p: vec3<f32>, before: vec3<f32>, inverse_speed: f32) -> bool {
 }
 
 fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
-    var light = rain_drop_shine(
-        environment,
-        environment_sampler,
-        view.environment,
-        view.ambient,
-        view.sun_direction.xyz,
-        view.sun.rgb,
-        normalize(place),
-    );
+    let from_eye = normalize(place);
+    var light = rain_drop_shine_evenly(view.ambient, view.sun_direction.xyz, view.sun.rgb, from_eye);
+    if (ENVIRONMENT) {
+        light = rain_drop_shine(
+            environment,
+            environment_sampler,
+            view.environment,
+            view.ambient,
+            view.sun_direction.xyz,
+            view.sun.rgb,
+            from_eye,
+        );
+    }
     if (LAMPS) {
         for (var i = 0u; i < view.lamps; i++) {
             light += rain_lamp_radiance(view.lamp[i], place);

@@ -23,6 +23,7 @@ enum CoverTest {
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ProjectKey {
     cover: CoverTest,
+    environment: bool,
     lamps: bool,
     panes: bool,
 }
@@ -39,13 +40,17 @@ impl ProjectKey {
                 (false, true) => CoverTest::Straight,
                 (false, false) => CoverTest::Driven,
             },
+            environment: view.environment[..3] != [0.0; 3],
             lamps: view.lamps > 0,
             panes: view.panes > 0,
         }
     }
 
     fn index(self) -> usize {
-        4 * self.cover as usize + 2 * usize::from(self.lamps) + usize::from(self.panes)
+        let flags = [self.environment, self.lamps, self.panes];
+        flags
+            .into_iter()
+            .fold(self.cover as usize, |index, flag| 2 * index + usize::from(flag))
     }
 }
 
@@ -54,7 +59,7 @@ impl ProjectKey {
 pub(super) struct Project {
     pub layout: wgpu::BindGroupLayout,
     module: wgpu::ShaderModule,
-    pipelines: [OnceLock<wgpu::ComputePipeline>; 12],
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 24],
 }
 
 impl Project {
@@ -100,6 +105,7 @@ impl Project {
                     &[&self.layout],
                     &[
                         ("COVER", key.cover as u32 as f64),
+                        ("ENVIRONMENT", f64::from(key.environment)),
                         ("LAMPS", f64::from(key.lamps)),
                         ("PANES", f64::from(key.panes)),
                     ],
