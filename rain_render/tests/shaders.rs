@@ -14,7 +14,8 @@ fn every_module_is_valid() {
         let source = compose::module(pass.name);
         let module = parse(&source);
         assert!(!module.entry_points.is_empty(), "{} has no entry point", pass.name);
-        Validator::new(ValidationFlags::all(), Capabilities::empty())
+        // Halves in words are a part of every WebGPU.
+        Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
             .validate(&module)
             .unwrap_or_else(|e| panic!("{}: {}", pass.name, e.emit_to_string(&source)));
         checked += 1;
