@@ -15,6 +15,11 @@ fn rain_surroundings(
     return textureSampleLevel(map, filtering, d, blur * environment.w).rgb * environment.rgb + ambient.rgb;
 }
 
+// Angle of the sun from a line of sight; both unit vectors.
+fn rain_sun_angle(sun_direction: vec3<f32>, from_eye: vec3<f32>) -> f32 {
+    return acos(clamp(dot(from_eye, sun_direction), -1.0, 1.0));
+}
+
 // Radiance of a drop that is seen along `from_eye`, a unit vector.
 fn rain_drop_shine(
     map: texture_cube<f32>,
@@ -28,12 +33,10 @@ fn rain_drop_shine(
     let refracted = rain_surroundings(map, filtering, environment, ambient, from_eye, 0.55);
     let above = vec3<f32>(-from_eye.x, max(0.2, -from_eye.y), -from_eye.z);
     let reflected = rain_surroundings(map, filtering, environment, ambient, above, 0.9);
-    let theta = acos(clamp(dot(from_eye, sun_direction), -1.0, 1.0));
-    return rain_drop_radiance(refracted, reflected, sun, theta);
+    return rain_drop_radiance(refracted, reflected, sun, rain_sun_angle(sun_direction, from_eye));
 }
 
 // The same where the surroundings are even.
 fn rain_drop_shine_evenly(ambient: vec4<f32>, sun_direction: vec3<f32>, sun: vec3<f32>, from_eye: vec3<f32>) -> vec3<f32> {
-    let theta = acos(clamp(dot(from_eye, sun_direction), -1.0, 1.0));
-    return rain_drop_radiance(ambient.rgb, ambient.rgb, sun, theta);
+    return rain_drop_radiance(ambient.rgb, ambient.rgb, sun, rain_sun_angle(sun_direction, from_eye));
 }

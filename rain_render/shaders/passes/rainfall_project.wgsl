@@ -30,8 +30,10 @@ fn sheltered(p: vec3<f32>, before: vec3<f32>, inverse_speed: f32) -> bool {
 
 fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
     let from_eye = normalize(place);
-    var light = rain_drop_shine_evenly(view.ambient, view.sun_direction.xyz, view.sun.rgb, from_eye);
-    if (ENVIRONMENT) {
+    var light: vec3<f32>;
+    if (!ENVIRONMENT) {
+        light = rain_drop_shine_evenly(view.ambient, view.sun_direction.xyz, view.sun.rgb, from_eye);
+    } else {
         light = rain_drop_shine(
             environment,
             environment_sampler,

@@ -1,4 +1,5 @@
-//! Pipelines of the projection, each with only what its view needs: masked-off code is not free on every device.
+//! Pipelines of the projection. A software device runs masked-off code too: there each has only what its view needs. On a
+//! GPU one serves all, made at the start, so that the first lamp or gust makes no frame wait.
 
 use std::sync::OnceLock;
 
@@ -29,6 +30,13 @@ pub(super) struct ProjectKey {
 }
 
 impl ProjectKey {
+    const EVERYTHING: Self = Self {
+        cover: CoverTest::Driven,
+        environment: true,
+        lamps: true,
+        panes: true,
+    };
+
     /// What a view needs.
     pub fn of(input: &RainfallInput, view: &RainfallView) -> Self {
         let falls = |v: glam::Vec3| v.x == 0.0 && v.z == 0.0;
@@ -54,11 +62,13 @@ impl ProjectKey {
     }
 }
 
-/// The projection's layout, and its pipelines, made when a view first needs them.
+/// The projection's layout and its pipelines.
 #[derive(Debug)]
 pub(super) struct Project {
     pub layout: wgpu::BindGroupLayout,
     module: wgpu::ShaderModule,
+    /// Views have pipelines of their own.
+    apart: bool,
     pipelines: [OnceLock<wgpu::ComputePipeline>; 24],
 }
 
@@ -86,15 +96,26 @@ impl Project {
                 sampler_entry(5, compute),
             ],
         });
-        Self {
+        let project = Self {
             layout,
             module: compose::shader(device, "rainfall_project"),
+            apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
             pipelines: Default::default(),
+        };
+        if !project.apart {
+            project.prepare(device, ProjectKey::EVERYTHING);
         }
+        project
+    }
+
+    /// What serves a view that needs this.
+    fn serving(&self, key: ProjectKey) -> ProjectKey {
+        if self.apart { key } else { ProjectKey::EVERYTHING }
     }
 
     /// Makes sure that the pipeline exists.
     pub fn prepare(&self, device: &wgpu::Device, key: ProjectKey) {
+        let key = self.serving(key);
         if let Some(slot) = self.pipelines.get(key.index()) {
             slot.get_or_init(|| {
                 compute_pipeline_with(
@@ -115,6 +136,6 @@ impl Project {
     }
 
     pub fn get(&self, key: ProjectKey) -> Option<&wgpu::ComputePipeline> {
-        self.pipelines.get(key.index())?.get()
+        self.pipelines.get(self.serving(key).index())?.get()
     }
 }

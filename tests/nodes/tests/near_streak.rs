@@ -137,7 +137,7 @@ pub fn attachment(gpu: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
 }
 
 /// A half float that is neither infinite nor NaN.
-pub fn half(bits: u16) -> f32 {
+fn half(bits: u16) -> f32 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023) / 1024.0);
     let size = if exponent == 0 {
         fraction * 2.0_f32.powi(-14)
@@ -218,6 +218,11 @@ fn draw(gpu: &Device, pipelines: &mut RainfallGpu, view: &FieldView, container: 
         });
         encode_draw(&mut pass, pipelines, &buffers, FORMAT, 1);
     }
+    red_of(gpu, encoder, &target)
+}
+
+/// The red of an [`attachment`] of [`FORMAT`] after what an encoder holds, row after row.
+pub fn red_of(gpu: &Device, mut encoder: wgpu::CommandEncoder, target: &wgpu::Texture) -> Vec<f32> {
     let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: u64::from(SIDE * SIDE * 8),

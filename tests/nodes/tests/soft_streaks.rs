@@ -8,7 +8,7 @@ use rain_render::rainfall::{RainfallGpu, RainfallTextures, RainfallViewGpu, Stre
 use crate::cover_parity::{EYE, depth_map, depth_texture, heights, placement};
 use crate::device::{Device, device};
 use crate::field_parity::FieldView;
-use crate::near_streak::{FORMAT, SIDE, attachment, half};
+use crate::near_streak::{FORMAT, SIDE, attachment, red_of};
 
 const SEED: u64 = 5;
 const NEAR_M: f32 = 0.05;
@@ -109,30 +109,8 @@ fn draw(
         pass.set_viewport(x, y, VIEW as f32, VIEW as f32, 0.0, 1.0);
         encode_draw(&mut pass, pipelines, &buffers, FORMAT, 1);
     }
-    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(SIDE * SIDE * 8),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    });
-    encoder.copy_texture_to_buffer(
-        target.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &copy,
-            layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(SIDE * 8),
-                rows_per_image: None,
-            },
-        },
-        target.size(),
-    );
-    gpu.queue.submit([encoder.finish()]);
-    let bytes = gpu.read(&copy, u64::from(SIDE * SIDE * 8));
-    let red = |x: u32, y: u32| {
-        let at = 8 * ((y + CORNER[1]) * SIDE + x + CORNER[0]) as usize;
-        half(u16::from_le_bytes([bytes[at], bytes[at + 1]]))
-    };
+    let all = red_of(gpu, encoder, &target);
+    let red = |x: u32, y: u32| all[((y + CORNER[1]) * SIDE + x + CORNER[0]) as usize];
     (0..VIEW * VIEW).map(|i| red(i % VIEW, i / VIEW)).collect()
 }
 
