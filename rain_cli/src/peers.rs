@@ -160,7 +160,10 @@ fn frame(programs: &Path, kind: &str, count: u32) -> Result<(Cost, Value), Strin
 fn quads(programs: &Path, count: u32, rows: &mut Rows) -> Result<(), String> {
     let json = answer(programs, "quads", count)?;
     let bare = part(&json, "bare", "quads")?;
-    for (place, name) in ["bare", "draw", "soft", "project"].into_iter().enumerate() {
+    for (place, name) in ["bare", "draw", "soft", "project", "listed", "list"]
+        .into_iter()
+        .enumerate()
+    {
         let key = (count, KINDS.len() + place, format!("pass: {name}"));
         push(rows, key, part(&json, name, "quads")?, bare, json["shown"].clone());
     }

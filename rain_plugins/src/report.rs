@@ -143,7 +143,8 @@ pub struct RainReport(Arc<Mutex<Report>>);
 pub struct Report {
     /// One entry for each pass that has been considered.
     pub passes: BTreeMap<PassName, PassRecord>,
-    /// Drops handed to the GPU in the latest frames that drew rain, at most [`KEPT_FRAMES`] of them.
+    /// Drops that the GPU drew singly in the latest frames that drew rain, at most [`KEPT_FRAMES`] of them. A frame's count
+    /// comes back a frame or two later.
     pub drops: VecDeque<u32>,
     /// Cards handed to the GPU in the latest frames that drew any, at most [`KEPT_FRAMES`] of them.
     pub cards: VecDeque<u32>,

@@ -88,17 +88,62 @@ struct RainfallView {
     kappa: f32,
     // Fade against the scene over this distance, m; 0 = hard depth test only.
     soft: f32,
-    drops: u32,
     lamps: u32,
     panes: u32,
     // 1: near streaks have a pattern.
     patterned: u32,
     pad_a: u32,
     pad_b: u32,
+    pad_c: u32,
     cover: CoverParams,
     classes: array<RainfallClass, 12>,
     lamp: array<LampParams, 16>,
     pane: array<GlassPane, 8>,
+}
+
+// Cells of a class's lattice that may hold drops of a view.
+struct ChoiceClass {
+    // Lowest cell, from the eye's; w unused.
+    low: vec4<i32>,
+    // Cells along each axis; w unused.
+    side: vec4<u32>,
+    // How many cells of all classes come before, and how many this class has; drops of a cell that there is room for on the
+    // stage, and where its part begins.
+    cells: vec4<u32>,
+    // No drop has a rank above x, all up to y are there wholly; z: threshold at a diameter of 0, w: slope of its ln, 1/mm.
+    ranks: vec4<f32>,
+    // Reach of the largest drops and of the smallest, of a streak, and of what may have a pattern, m.
+    reach: vec4<f32>,
+}
+
+// What the drops of a view are chosen from.
+struct RainfallChoice {
+    // Side planes through the eye: inward normals, and how far what is outside still counts.
+    planes: array<vec4<f32>, 4>,
+    // Container that follows the view. Half its width, half its height, how far ahead, and 0 none, 1 half a cylinder, 2 a block.
+    region: vec4<f32>,
+    // Its middle from the eye, m; w: its slack, m.
+    region_place: vec4<f32>,
+    // The lead over the square of its length, 1/m; w: 1 where there is one.
+    along: vec4<f32>,
+    // Sine and cosine of its heading; z: its rim, m; w unused.
+    region_turn: vec4<f32>,
+    // Ladder of rates: ln of the first, knots a factor of e, knots; w unused.
+    ladder: vec4<f32>,
+    // Cells of all classes, and groups of them.
+    cells: u32,
+    groups: u32,
+    // No more drops are drawn.
+    most: u32,
+    // Draws that drops are divided into.
+    draws: u32,
+    // Law of detail: 0 none, 1 optical depth, 2 quadratic, 3 Gaussian.
+    detail: u32,
+    // Quality, focal length in px, shutter time in s, of the choice.
+    kappa: f32,
+    focal: f32,
+    exposure: f32,
+    classes: array<ChoiceClass, 12>,
 }
 
 // See `DropRecord` in rain_core.

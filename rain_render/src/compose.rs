@@ -4,10 +4,15 @@ use std::fmt::Write as _;
 
 use rain_core::haze::{FIRST_RATE_MM_H, FOG_TABLE_END_M, FOG_TABLE_KNOTS, RATE_KNOTS};
 use rain_core::optics::{BOW_KNOTS, BOW_SPAN_DEG, BOW_STEP_DEG};
-use rain_core::rainfall::{FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, RANGE_CAP_M};
+use rain_core::rainfall::{
+    FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, RANGE_CAP_M, SOFT_EDGE,
+};
 use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::{CAUSTIC_END_M, CAUSTIC_RAYS, CAUSTIC_TEXELS, CAUSTIC_WAYS_M, LEAST_ELEVATION, RING_FADE};
+
+use crate::quad_indices::QUADS_OF_A_DRAW;
+use crate::rainfall::NO_DROP;
 
 /// Structs that cross from the CPU.
 pub const TYPES: &str = concat!(
@@ -88,6 +93,7 @@ macro_rules! passes {
 
 /// Every pass.
 pub const PASSES: &[Pass] = passes![
+    "rainfall_choose",
     "rainfall_project",
     "rainfall_draw",
     "rainfall_near",
@@ -112,7 +118,7 @@ pub const PASSES: &[Pass] = passes![
 const SHARED: [(&str, &[&str]); 2] = [
     (
         include_str!("../shaders/shared/area_rows.wgsl"),
-        &["water_map", "haze_areas"],
+        &["water_map", "haze_areas", "rainfall_choose"],
     ),
     (
         include_str!("../shaders/shared/streak_quads.wgsl"),
@@ -152,6 +158,7 @@ pub fn constants() -> String {
     for (name, value) in [
         ("RAIN_RANGE_CAP_M", RANGE_CAP_M),
         ("RAIN_FADE_END", FADE_END),
+        ("RAIN_SOFT_EDGE", f64::from(SOFT_EDGE)),
         ("RAIN_BUILDING_HEIGHT_M", BUILDING_HEIGHT_M),
         ("RAIN_DEEPEST_PUDDLE_M", DEEPEST_PUDDLE_M),
         ("RAIN_WIND_TILE", WIND_TILE),
@@ -188,6 +195,8 @@ pub fn constants() -> String {
         let _ = writeln!(out, "const {name}: f32 = {value:?};");
     }
     for (name, value) in [
+        ("RAIN_NO_DROP", NO_DROP),
+        ("RAIN_QUADS_OF_A_DRAW", QUADS_OF_A_DRAW),
         ("RAIN_RATE_KNOTS", RATE_KNOTS as u32),
         ("RAIN_BOW_KNOTS", BOW_KNOTS as u32),
         ("RAIN_CAUSTIC_TEXELS", CAUSTIC_TEXELS),

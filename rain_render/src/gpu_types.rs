@@ -70,16 +70,48 @@ pub struct RainfallView {
     pub contrast: f32,
     pub kappa: f32,
     pub soft: f32,
-    pub drops: u32,
     pub lamps: u32,
     pub panes: u32,
     pub patterned: u32,
     pub pad_a: u32,
     pub pad_b: u32,
+    pub pad_c: u32,
     pub cover: CoverParams,
     pub classes: [RainfallClass; CLASS_COUNT],
     pub lamp: [LampParams; MAX_LAMPS],
     pub pane: [GlassPane; MAX_PANES],
+}
+
+/// Cells of a class's lattice that may hold drops of a view.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct ChoiceClass {
+    pub low: [i32; 4],
+    pub side: [u32; 4],
+    pub cells: [u32; 4],
+    pub ranks: [f32; 4],
+    pub reach: [f32; 4],
+}
+
+/// What the drops of a view are chosen from.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub struct RainfallChoice {
+    pub planes: [[f32; 4]; 4],
+    pub region: [f32; 4],
+    pub region_place: [f32; 4],
+    pub along: [f32; 4],
+    pub region_turn: [f32; 4],
+    pub ladder: [f32; 4],
+    pub cells: u32,
+    pub groups: u32,
+    pub most: u32,
+    pub draws: u32,
+    pub detail: u32,
+    pub kappa: f32,
+    pub focal: f32,
+    pub exposure: f32,
+    pub classes: [ChoiceClass; CLASS_COUNT],
 }
 
 /// A projected streak; written and read by the GPU only.
@@ -578,8 +610,11 @@ pub fn layouts() -> Vec<Layout> {
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
         layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead, size,
-            viewport, focal, near, exposure, contrast, kappa, soft, drops, lamps, panes, patterned, pad_a, pad_b,
+            viewport, focal, near, exposure, contrast, kappa, soft, lamps, panes, patterned, pad_a, pad_b, pad_c,
             cover, classes, lamp, pane),
+        layout!(ChoiceClass: low, side, cells, ranks, reach),
+        layout!(RainfallChoice: planes, region, region_place, along, region_turn, ladder, cells, groups, most, draws, detail, kappa,
+            focal, exposure, classes),
         layout!(GlassPane: along, up, across),
         layout!(SplashFoot: place, key),
         layout!(SpoutMouth: place, velocity, form, state, key),

@@ -1,7 +1,7 @@
 //! Indices of quads whose two triangles share corners: four vertices a quad instead of six.
 
 /// Quads of one draw: as many as 16-bit indices reach.
-const MOST: u32 = 1 << 14;
+pub(crate) const QUADS_OF_A_DRAW: u32 = 1 << 14;
 
 /// Indices of the first quads, for any number of them: draws after the first begin at later vertices.
 #[derive(Debug)]
@@ -10,7 +10,7 @@ pub(crate) struct QuadIndices(wgpu::Buffer);
 impl QuadIndices {
     /// 192 KiB that live with the device.
     pub fn new(device: &wgpu::Device) -> Self {
-        let corners = (0..MOST).flat_map(|quad| [0, 1, 2, 2, 1, 3].map(|corner| (4 * quad + corner) as u16));
+        let corners = (0..QUADS_OF_A_DRAW).flat_map(|quad| [0, 1, 2, 2, 1, 3].map(|corner| (4 * quad + corner) as u16));
         let bytes: Vec<u8> = corners.flat_map(u16::to_le_bytes).collect();
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("rain quad indices"),
@@ -23,12 +23,24 @@ impl QuadIndices {
         Self(buffer)
     }
 
-    /// Draws `quads` quads with the pipeline and the bindings that are set; corner c of quad q is vertex 4q + c.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass, quads: u32) {
+    /// Draws quads with the pipeline and the bindings that are set; corner c of quad q is vertex 4q + c. How many there are
+    /// stands in `draws` draws' arguments, from byte `offset` of `arguments` on.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass, arguments: &wgpu::Buffer, offset: u64, draws: u32) {
         pass.set_index_buffer(self.0.slice(..), wgpu::IndexFormat::Uint16);
-        for from in (0..quads).step_by(MOST as usize) {
-            let some = (quads - from).min(MOST);
-            pass.draw_indexed(0..6 * some, 4 * from as i32, 0..1);
+        for draw in 0..u64::from(draws) {
+            pass.draw_indexed_indirect(arguments, offset + DRAW_BYTES * draw);
         }
     }
+}
+
+/// Arguments of one indexed draw.
+pub(crate) const DRAW_BYTES: u64 = 20;
+
+/// Arguments of `draws` draws for `quads` quads, as the shader that counts drops writes them.
+pub(crate) fn draw_words(quads: u32, draws: u32) -> impl Iterator<Item = u32> {
+    (0..draws).flat_map(move |draw| {
+        let first = QUADS_OF_A_DRAW * draw;
+        let some = (quads - first.min(quads)).min(QUADS_OF_A_DRAW);
+        [6 * some, 1, 0, 4 * first, 0]
+    })
 }

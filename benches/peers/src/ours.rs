@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use bevy::prelude::*;
-use rain_core::rainfall::Container;
 use rain_plugins::RainPlugins;
 use rain_plugins::prelude::*;
 use rain_plugins::rainfall::RainViewFrame;
@@ -22,7 +21,7 @@ pub fn add(app: &mut App, alone: bool) {
     }
 }
 
-/// Rain with `count` visible streaks; `alone`: nothing but streaks. Returns what is seen and how many drops are uploaded.
+/// Rain with `count` visible streaks; `alone`: nothing but streaks. Returns what is seen and how many drops are drawn.
 pub fn rain(app: &mut App, camera: Entity, count: u32, alone: bool) -> Result<(Shown, u32), String> {
     let world = app.world_mut();
     // Nothing here runs in `FixedUpdate`.
@@ -52,14 +51,14 @@ pub fn rain(app: &mut App, camera: Entity, count: u32, alone: bool) -> Result<(S
             .get::<RainViewFrame>(camera)
             .ok_or("the camera has no rain")?;
         // The first updates know no weather or no size of the picture yet.
-        let Some(shutter) = frame.shutter else { continue };
-        let container: &Container = &frame.container;
-        let input = field::input(container, frame.seed, shutter.kappa, 0.0);
-        let streaks = field::project(&device, &queue, &gpu, &mut view, &input)?;
+        let (Some(_), Some(choice)) = (frame.shutter, &frame.choice) else {
+            continue;
+        };
+        let streaks = field::project(&device, &queue, &gpu, &mut view, &field::input(choice, 0.0))?;
         let shown = field::shown(field::quads_of(&streaks));
         let ratio = f64::from(count) / f64::from(shown.visible.max(1));
         if (ratio - 1.0).abs() <= field::TOLERANCE {
-            return Ok((shown, container.records.len() as u32));
+            return Ok((shown, streaks.len() as u32));
         }
         budget *= ratio;
     }

@@ -13,6 +13,7 @@ use super::field::{FieldMotion, LatticeEye, Threshold, cell_key, drop_marks, dro
 use super::follow::{Follow, FollowSettings};
 use super::local::{CellRain, LocalRain};
 use super::spectrum::Spectrum;
+use super::view_cells::{ClassCells, ViewCells};
 use crate::error::clamped;
 use crate::hash::unit_f32;
 
@@ -29,7 +30,7 @@ pub const LEAD_TIME_S: f64 = 0.15;
 pub const LEAD_CAP_M: f64 = 8.0;
 
 /// Lattice coordinates relative to the eye's cell lie in [−512, 511].
-const CELL_BIAS: i32 = 512;
+pub(super) const CELL_BIAS: i32 = 512;
 
 /// A view as the container needs it. World metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,6 +71,16 @@ pub struct DrawRange {
 }
 
 impl DrawRange {
+    /// That of a view at a quality.
+    #[must_use]
+    pub fn of(view: &RainViewVolume, kappa: f64) -> Self {
+        Self {
+            kappa,
+            focal_px: view.focal_px,
+            exposure_s: view.exposure_s,
+        }
+    }
+
     /// z_s(D). `diameter_mm` in mm. Units: m, in [0, 15].
     ///
     /// A quality that is not above 0 draws nothing; the rest as [`visible_range_m`].
@@ -90,11 +101,7 @@ impl DrawRange {
 /// Error: 1.6 % against the integral over diameters; drops in the margins at the view's sides come on top, up to 45 %.
 #[must_use]
 pub fn expected_drops(spectrum: &Spectrum, view: &RainViewVolume, kappa: f64) -> f64 {
-    let range = DrawRange {
-        kappa,
-        focal_px: view.focal_px,
-        exposure_s: view.exposure_s,
-    };
+    let range = DrawRange::of(view, kappa);
     let solid_angle = clamped(view.solid_angle_sr, 0.0, 4.0 * core::f64::consts::PI);
     let mut sum = 0.0;
     for class in SizeClass::all() {
@@ -223,36 +230,16 @@ impl Container {
         max_drops: usize,
         thinning: &Thinning,
     ) -> bool {
-        let local = thinning.local;
         self.records.clear();
         self.classes.clear();
         (self.cells_visited, self.cells_kept) = (0, 0);
-        let range = DrawRange {
-            kappa,
-            focal_px: view.focal_px,
-            exposure_s: view.exposure_s,
-        };
-        let eye_velocity = if view.eye_velocity_m_s.is_finite() {
-            view.eye_velocity_m_s
-        } else {
-            DVec3::ZERO
-        };
-        let lead = (eye_velocity * LEAD_TIME_S).clamp_length_max(LEAD_CAP_M).as_vec3();
+        let cells = ViewCells::new(spectrum, motion, view, kappa, thinning.local.is_some());
         let mut complete = true;
-        for (k, class) in SizeClass::all().iter().enumerate() {
-            let placement = ClassPlacement {
-                eye: LatticeEye::new(view.eye_m, motion.offset_m[k], class.cell_m),
-                velocity_m_s: motion.velocity_m_s[k].as_vec3(),
-            };
-            self.classes.push(placement);
-            if (spectrum.n0_per_m3_mm > 0.0 || local.is_some()) && kappa > 0.0 {
-                // A streak reaches back along its path relative to the eye for one exposure.
-                let relative = placement.velocity_m_s - eye_velocity.as_vec3();
-                let streak = relative.length() * view.exposure_s as f32;
-                complete &= self.fill_class(
-                    seed, k, class, spectrum, &placement, view, &range, lead, streak, max_drops, thinning,
-                );
-            }
+        for (k, (class, cells_of)) in SizeClass::all().iter().zip(&cells.classes).enumerate() {
+            self.classes.push(cells_of.placement);
+            complete &= self.fill_class(
+                seed, k, class, spectrum, view, &cells, cells_of, kappa, max_drops, thinning,
+            );
         }
         complete
     }
@@ -263,15 +250,16 @@ impl Container {
         k: usize,
         class: &SizeClass,
         spectrum: &Spectrum,
-        placement: &ClassPlacement,
         view: &RainViewVolume,
-        range: &DrawRange,
-        lead: Vec3,
-        streak: f32,
+        cells: &ViewCells,
+        of: &ClassCells,
+        kappa: f64,
         max_drops: usize,
         thinning: &Thinning,
     ) -> bool {
         let Thinning { local, region, detail } = *thinning;
+        let range = DrawRange::of(view, kappa);
+        let (lead, placement, streak, reach) = (cells.lead_m, &of.placement, of.streak_m, of.reach_m);
         let everywhere = CellRain::Even(Threshold::new(class, spectrum));
         let eye = if view.eye_m.is_finite() {
             view.eye_m
@@ -280,19 +268,13 @@ impl Container {
         };
         let world = |place: Vec3| eye.xz() + place.xz().as_dvec2();
         let cell_m = class.cell_m as f32;
-        let reach = (FADE_END * range.at(class.max_mm)) as f32;
-        // A class's smallest drops are drawn as far as this; below it for rounding.
-        let least_reach = (FADE_END * (1.0 - 1e-5) * range.at(class.min_mm)) as f32;
-        let low = (lead.min(Vec3::ZERO) - reach) / cell_m + placement.eye.fraction;
-        let high = (lead.max(Vec3::ZERO) + reach) / cell_m + placement.eye.fraction;
         let bound = IVec3::splat(CELL_BIAS);
-        let low = low.floor().as_ivec3().max(-bound);
-        let high = high.floor().as_ivec3().min(bound - 1);
         let half = 0.5 * cell_m;
         let cell_radius = half * 3.0_f32.sqrt();
-        for z in low.z..=high.z {
-            for y in low.y..=high.y {
-                for x in low.x..=high.x {
+        let high = of.low + of.side.as_ivec3();
+        for z in of.low.z..high.z {
+            for y in of.low.y..high.y {
+                for x in of.low.x..high.x {
                     self.cells_visited += 1;
                     let cell = IVec3::new(x, y, z);
                     let centre = (cell.as_vec3() - placement.eye.fraction) * cell_m + half;
@@ -333,7 +315,7 @@ impl Container {
                             return;
                         }
                         let mut presence = 1.0;
-                        if distance > least_reach || mark.rank > whole {
+                        if distance > of.least_reach_m || mark.rank > whole {
                             let drop = mark.drop(class, place);
                             if distance > (FADE_END * range.at(f64::from(drop.diameter_mm))) as f32 {
                                 return;

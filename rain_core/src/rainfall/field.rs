@@ -188,8 +188,15 @@ impl Threshold {
         self.max * (1.0 + SOFT_EDGE)
     }
 
+    /// Threshold at a diameter of 0, and the slope of its ln. Units: none, mm⁻¹.
+    #[must_use]
+    pub fn terms(&self) -> [f32; 2] {
+        [self.scale, self.slope]
+    }
+
     /// Up to this rank every drop of the class is there wholly, whatever its diameter; a little lower, for rounding.
-    pub(super) fn whole_limit(&self) -> f32 {
+    #[must_use]
+    pub fn whole_limit(&self) -> f32 {
         self.min * (1.0 - 1.002 * SOFT_EDGE)
     }
 

@@ -14,8 +14,6 @@ use crate::ops;
 
 /// Knots a factor of 10; enough for the bound below.
 const KNOTS_PER_DECADE: f64 = 48.0;
-/// Rate of the first knot; below it the spectrum keeps its slope. Units: mm/h.
-const FIRST_MM_H: f64 = 1e-3;
 
 /// Thresholds of every class over the rain rates of one family of spectra.
 ///
@@ -30,15 +28,20 @@ pub struct RateLadder {
 }
 
 impl RateLadder {
+    /// Rate of the first knot; below it a spectrum keeps its slope. Units: mm/h.
+    pub const FIRST_MM_H: f64 = 1e-3;
+    /// Knots a factor of e.
+    pub const KNOTS_PER_E_FOLD: f64 = KNOTS_PER_DECADE / core::f64::consts::LN_10;
+
     /// The ladder of a family.
     #[must_use]
     pub fn new(distribution: Distribution) -> Self {
-        let decades = ops::ln(MAX_INTENSITY_MM_H / FIRST_MM_H) / core::f64::consts::LN_10;
+        let decades = ops::ln(MAX_INTENSITY_MM_H / Self::FIRST_MM_H) / core::f64::consts::LN_10;
         let count = (decades * KNOTS_PER_DECADE).ceil() as usize + 1;
         let mut knots: [Vec<[f32; 2]>; CLASS_COUNT] = Default::default();
         let mut limits: [Vec<f32>; CLASS_COUNT] = Default::default();
         for knot in 0..count {
-            let rate = FIRST_MM_H * ops::exp(knot as f64 * core::f64::consts::LN_10 / KNOTS_PER_DECADE);
+            let rate = Self::FIRST_MM_H * ops::exp(knot as f64 * core::f64::consts::LN_10 / KNOTS_PER_DECADE);
             if let Ok(spectrum) = Spectrum::new(distribution, rate.min(MAX_INTENSITY_MM_H)) {
                 for (k, class) in SizeClass::all().iter().enumerate() {
                     let threshold = Threshold::new(class, &spectrum);
@@ -63,7 +66,7 @@ impl RateLadder {
 
     /// Place of a rate among the knots.
     fn place(rate_mm_h: f64) -> f64 {
-        ops::ln(rate_mm_h / FIRST_MM_H) * (KNOTS_PER_DECADE / core::f64::consts::LN_10)
+        ops::ln(rate_mm_h / Self::FIRST_MM_H) * Self::KNOTS_PER_E_FOLD
     }
 
     /// Threshold of a class (0…11, the last beyond) at a rate, none where it is dry. `rate_mm_h` in mm/h, held in [0, 500].
@@ -80,7 +83,7 @@ impl RateLadder {
         // Below the first knot the number goes with the rate, the slope stays.
         let t = (place - index as f64).clamp(0.0, 1.0) as f32;
         let less = if place < 0.0 {
-            ops::ln(rate / FIRST_MM_H) as f32
+            ops::ln(rate / Self::FIRST_MM_H) as f32
         } else {
             0.0
         };
@@ -90,10 +93,23 @@ impl RateLadder {
         ))
     }
 
+    /// How many knots each class has.
+    #[must_use]
+    pub fn knots_of_class(&self) -> usize {
+        self.knots[0].len()
+    }
+
+    /// ln of the threshold at a diameter of 0 and its slope (mm⁻¹) at the knots, class after class: knot i is the rate
+    /// [`RateLadder::FIRST_MM_H`] e^(i/[`RateLadder::KNOTS_PER_E_FOLD`]).
+    pub fn ln_lines(&self) -> impl Iterator<Item = [f32; 2]> {
+        self.knots.iter().flatten().copied()
+    }
+
     /// No rank above this exists at any rate up to this one (mm/h).
-    fn scan_limit(&self, class: usize, highest_mm_h: f64) -> f32 {
+    #[must_use]
+    pub fn scan_limit(&self, class: usize, highest_mm_h: f64) -> f32 {
         let limits = &self.limits[class.min(CLASS_COUNT - 1)];
-        let place = Self::place(highest_mm_h.max(FIRST_MM_H)).max(0.0).ceil() as usize;
+        let place = Self::place(highest_mm_h.max(Self::FIRST_MM_H)).max(0.0).ceil() as usize;
         // Between two knots a threshold is at most that of the greater, but for rounding.
         1.001 * limits[place.min(limits.len() - 1)]
     }

@@ -3,6 +3,7 @@
 
 pub mod areas;
 mod bulk;
+mod choice;
 mod class_scheme;
 mod class_weights;
 mod classes;
@@ -29,8 +30,10 @@ mod spectrum;
 mod streak;
 mod streak_texture;
 pub mod terminal_velocity;
+mod view_cells;
 mod wind_response;
 
+pub use choice::{DropChoice, UnevenRain};
 pub use class_scheme::{ClassErrors, ClassScheme};
 pub use class_weights::ClassWeights;
 pub use classes::{CLASS_CELL_M, CLASS_COUNT, CLASS_EDGES_MM, CLASS_SPEEDS_M_S, SizeClass, visible_range_m};
@@ -81,4 +84,5 @@ pub use terminal_velocity::{
     BeardAir, FallLaw, MAX_FITTED_DIAMETER_MM, StandardAtmosphere, density_factor, gunn_kinzer, terminal_velocity,
     terminal_velocity_f32,
 };
+pub use view_cells::{ClassCells, ViewCells};
 pub use wind_response::{WindResponse, gust_gain, relax_f32, response_time_s, slant_rad};

@@ -297,7 +297,7 @@ pub(crate) fn aim_haze(
             efficiency: settings.efficiency,
             range: DrawRange {
                 kappa: shutter.kappa.into(),
-                focal_px: rain.focal_px.into(),
+                focal_px: rain.focal_px(),
                 exposure_s: shutter.exposure_s.into(),
             },
             cards: cards.is_some_and(|frame| frame.cards() > 0),

@@ -20,4 +20,4 @@ pub use rain_core::rainfall::{
 };
 pub use settings::CardSettings;
 pub use view::{MAX_CONTRAST, MAX_STREAK_BUDGET, RainView, RainViewFrame, RainfallPlugin};
-pub(crate) use view::{SoftwareAdapter, fill_containers, view_volume};
+pub(crate) use view::{SoftwareAdapter, choose_drops, view_volume};

@@ -1,4 +1,4 @@
-//! The per-view container: which drops a marked camera draws this frame.
+//! Each view's drops: what those that a marked camera draws this frame are chosen from.
 
 use std::sync::Arc;
 
@@ -7,8 +7,8 @@ use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
 use rain_core::rainfall::{
-    Container, DetailLaw, FADE_END, Follow, FollowSettings, LEAD_CAP_M, LocalRain, RANGE_CAP_M, RainViewVolume,
-    RateLadder, Thinning, quality_for_budget,
+    Container, DetailLaw, DropChoice, FADE_END, Follow, FollowSettings, LEAD_CAP_M, RANGE_CAP_M, RainViewVolume,
+    RateLadder, UnevenRain, quality_for_budget,
 };
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
@@ -153,12 +153,8 @@ impl RainView {
 /// What a view draws this frame; extracted to the render world.
 #[derive(Component, Clone, Debug, Default)]
 pub struct RainViewFrame {
-    /// The drops, shared with the render world.
-    pub container: Arc<Container>,
-    /// Kept from frame to frame so that nothing is allocated.
-    spare: Vec<Arc<Container>>,
-    /// Seed of the field.
-    pub seed: u64,
+    /// What its drops are chosen from, where it has any.
+    pub choice: Option<DropChoice>,
     /// Shutter and quality.
     pub shutter: Option<Shutter>,
     /// The last valid settings.
@@ -167,8 +163,6 @@ pub struct RainViewFrame {
     kappa: Option<(f64, f64)>,
     /// Where a container that was asked for stands.
     follow: Option<Follow>,
-    /// Focal length. Units: px.
-    pub focal_px: f32,
     /// Motion over the exposure.
     pub motion: ViewMotion,
 }
@@ -177,7 +171,25 @@ impl RainViewFrame {
     /// Whether this frame draws rain.
     #[must_use]
     pub fn draws(&self) -> bool {
-        self.shutter.is_some() && !self.container.records.is_empty()
+        self.shutter.is_some()
+    }
+
+    /// Focal length, 0 where the view has drawn no rain yet. Units: px.
+    #[must_use]
+    pub fn focal_px(&self) -> f64 {
+        self.choice.as_ref().map_or(0.0, |choice| choice.view.focal_px)
+    }
+
+    /// The drops that this frame draws singly, for those who want to know them: the GPU chooses the same ones for itself.
+    /// None where it draws no rain. Takes some 100 ns a drop.
+    #[must_use]
+    pub fn drops(&self) -> Container {
+        let mut drops = Container::default();
+        if let Some(choice) = self.choice.as_ref().filter(|_| self.draws()) {
+            // Beyond the limit the GPU leaves out the same ones.
+            let _complete = choice.fill(&mut drops);
+        }
+        drops
     }
 }
 
@@ -189,10 +201,41 @@ pub(crate) struct SoftwareAdapter(pub(crate) bool);
 #[derive(Default)]
 pub(crate) struct LocalSpectra {
     field: AreaField,
-    ladder: Option<RateLadder>,
+    ladder: Option<Arc<RateLadder>>,
+    /// Those of the latest frames: one may still be in the render world.
+    kept: Vec<Arc<UnevenRain>>,
 }
 
-/// Rain in the air: fills the containers of all [`RainView`]s, and their cards.
+impl LocalSpectra {
+    /// The rain from place to place, `after_s` seconds after the last tick.
+    fn uneven(&mut self, areas: &RainAreas, distribution: Distribution, after_s: f64) -> Arc<UnevenRain> {
+        areas.field_after(after_s, &mut self.field);
+        let ladder = match self.ladder.take() {
+            Some(old) if old.distribution() == distribution => old,
+            _ => Arc::new(RateLadder::new(distribution)),
+        };
+        self.ladder = Some(ladder.clone());
+        let weather_mm_h = areas.weather_mm_h();
+        let free = self.kept.iter().position(|kept| Arc::strong_count(kept) == 1);
+        let mut rain = free.map(|i| self.kept.swap_remove(i)).unwrap_or_else(|| {
+            Arc::new(UnevenRain {
+                areas: AreaField::default(),
+                ladder: ladder.clone(),
+                weather_mm_h,
+            })
+        });
+        if let Some(rain) = Arc::get_mut(&mut rain) {
+            std::mem::swap(&mut rain.areas, &mut self.field);
+            rain.ladder = ladder;
+            rain.weather_mm_h = weather_mm_h;
+        }
+        self.kept.push(rain.clone());
+        self.kept.truncate(4);
+        rain
+    }
+}
+
+/// Rain in the air: says what the drops of all [`RainView`]s are chosen from, and fills their cards.
 pub struct RainfallPlugin;
 
 impl Plugin for RainfallPlugin {
@@ -207,7 +250,7 @@ impl Plugin for RainfallPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    (fill_containers, choose_lamps, fill_cards).chain(),
+                    (choose_drops, choose_lamps, fill_cards).chain(),
                     (mark_blended, choose_panes).chain(),
                 )
                     .in_set(RainViewSystems::Views),
@@ -218,7 +261,7 @@ impl Plugin for RainfallPlugin {
 /// κ follows its target with this time constant, so that a change of rain does not jump. Units: s.
 const QUALITY_TIME_S: f64 = 1.0;
 
-pub(crate) fn fill_containers(
+pub(crate) fn choose_drops(
     time: Res<Time>,
     clock: Res<RainClock>,
     field: Res<RainfallField>,
@@ -243,19 +286,7 @@ pub(crate) fn fill_containers(
     let since_tick = f64::from(clock.interpolation()) * clock.tick_ns() as f64 * 1e-9;
     let now = clock.now_s() + since_tick;
     let areas = areas.as_deref().filter(|areas| !areas.is_uniform());
-    let LocalSpectra { field: rates, ladder } = &mut *local;
-    let uneven = areas.map(|areas| {
-        areas.field_after(since_tick, rates);
-        let ladder = match ladder.take() {
-            Some(old) if old.distribution() == field.distribution() => ladder.insert(old),
-            _ => ladder.insert(RateLadder::new(field.distribution())),
-        };
-        LocalRain {
-            areas: rates,
-            ladder,
-            weather_mm_h: areas.weather_mm_h(),
-        }
-    });
+    let uneven = areas.map(|areas| local.uneven(areas, field.distribution(), since_tick));
     let mut any = false;
     for (entity, view, camera, projection, transform, mut motion, mut frame) in &mut views {
         any = true;
@@ -268,12 +299,12 @@ pub(crate) fn fill_containers(
         let settings = frame.settings;
         let size = camera.physical_viewport_size().unwrap_or_default();
         // The heaviest rain that the view's drops may be in.
-        let spectrum = uneven.as_ref().map_or(*field.spectrum(), |local| {
+        let spectrum = uneven.as_ref().map_or(*field.spectrum(), |rain| {
             let eye = position.as_dvec3();
             let reach = FADE_END * RANGE_CAP_M + LEAD_CAP_M;
-            let rates = local
+            let rates = rain
                 .areas
-                .rates_within(DVec2::new(eye.x, eye.z), reach, local.weather_mm_h);
+                .rates_within(DVec2::new(eye.x, eye.z), reach, rain.weather_mm_h);
             field.spectrum_at(rates[1])
         });
         let closed_in = air.closed_in == Some(entity);
@@ -308,33 +339,19 @@ pub(crate) fn fill_containers(
         });
         frame.follow = follow.map(|(follow, _)| follow);
 
-        let mut container = frame.take_spare();
-        let field_motion = field.motion_after(since_tick);
-        // The budget is a mean; twice it is the hard bound on memory.
-        let complete = Arc::get_mut(&mut container).is_some_and(|c| {
-            c.fill_local(
-                seed.0,
-                &spectrum,
-                &field_motion,
-                &volume,
-                kappa,
-                2 * budget as usize + 1024,
-                &Thinning {
-                    local: uneven.as_ref(),
-                    region: follow.as_ref().map(|(follow, region)| (follow, region)),
-                    detail: settings.detail,
-                },
-            )
+        frame.choice = Some(DropChoice {
+            seed: seed.0,
+            spectrum,
+            motion: field.motion_after(since_tick),
+            view: volume,
+            kappa,
+            // The budget is a mean; twice it is the hard bound on memory.
+            most_drops: 2 * budget + 1024,
+            uneven: uneven.clone(),
+            region: follow,
+            detail: settings.detail,
         });
-        if !complete {
-            warn_once!("a rain view holds more than twice its streak budget; the rest is left out");
-        }
-        let old = std::mem::replace(&mut frame.container, container);
-        frame.spare.push(old);
-        frame.spare.truncate(3);
-        frame.seed = seed.0;
         frame.motion = *motion;
-        frame.focal_px = volume.focal_px as f32;
         frame.shutter = Some(Shutter {
             exposure_s: settings.exposure_s,
             contrast: settings.contrast,
@@ -353,12 +370,6 @@ impl RainViewFrame {
     /// The last valid settings.
     pub(super) fn settings(&self) -> RainView {
         self.settings
-    }
-
-    /// A container that nobody else holds.
-    fn take_spare(&mut self) -> Arc<Container> {
-        let free = self.spare.iter().position(|c| Arc::strong_count(c) == 1);
-        free.map(|i| self.spare.swap_remove(i)).unwrap_or_default()
     }
 }
 

@@ -11,7 +11,7 @@ use bevy::prelude::*;
 use bevy::render::storage::ShaderBuffer;
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::{Extract, MainWorld};
-use rain_core::rainfall::Container;
+use rain_core::rainfall::DropChoice;
 use rain_render::cover::CoverPlacement;
 use rain_render::gpu_types::WaterLook;
 use rain_render::rainfall::Shutter;
@@ -29,11 +29,9 @@ use crate::waves::{Handover, PuddleWaves, RainRings, ThrownLight};
 /// One camera that sees rain.
 #[derive(Component, Clone)]
 pub(super) struct ExtractedRainView {
-    pub container: Arc<Container>,
-    pub seed: u64,
+    pub choice: Option<DropChoice>,
     pub shutter: Option<Shutter>,
     pub motion: ViewMotion,
-    pub focal_px: f32,
     /// Prefiltered cube map and its scale to cd/m².
     pub environment: Option<(AssetId<Image>, f32)>,
     pub masks: Option<RainMasks>,
@@ -293,11 +291,9 @@ pub(super) fn extract_rain(
             continue;
         }
         entity.insert(ExtractedRainView {
-            container: frame.container.clone(),
-            seed: frame.seed,
+            choice: frame.choice.clone(),
             shutter: frame.shutter,
             motion: frame.motion,
-            focal_px: frame.focal_px,
             environment: environment.map(|e| (e.specular_map.id(), e.intensity)),
             masks: masks.cloned(),
             lamps: lamps.clone(),

@@ -9,10 +9,12 @@
 //! | `far_rain.rs` | all three for far rain |
 //! | `lattice.rs` | all three for cards and their streak textures |
 //! | `lightning.rs` | the material of lightning |
+//! | `counts.rs` | what the GPU counted, read back |
 //! | `splash.rs` | all three for splashes |
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
+mod counts;
 mod extract;
 mod far_rain;
 mod haze;
@@ -347,6 +349,7 @@ impl Plugin for RainRenderPlugin {
             .init_gpu_resource::<haze::HazeViews>()
             .init_gpu_resource::<far_rain::FarRainViews>()
             .init_gpu_resource::<lattice::LatticeViews>()
+            .init_gpu_resource::<record::DropCounts>()
             .init_resource::<lattice::ExtractedStreaks>()
             .init_gpu_resource::<lens::LensViews>()
             .init_resource::<extract::ExtractedWaves>()
@@ -377,7 +380,8 @@ impl Plugin for RainRenderPlugin {
                     )
                         .chain()
                         .in_set(RenderSystems::PrepareBindGroups),
-                    (wave_levels::show_levels, splash::count_splashes).in_set(RenderSystems::Cleanup),
+                    (wave_levels::show_levels, splash::count_splashes, record::count_drops)
+                        .in_set(RenderSystems::Cleanup),
                 ),
             )
             .add_systems(

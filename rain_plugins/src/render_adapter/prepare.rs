@@ -18,7 +18,9 @@ use rain_render::compose;
 use rain_render::cover::{CoverPlacement, open_sky};
 use rain_render::gpu_types::{CoverParams, LevelMapParams, ReflectionParams, SurfaceParams, WaterMapPlaces};
 use rain_render::masks::{GroundMaps, MaskGpu, known_texture};
-use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, StreakDraws};
+use rain_render::rainfall::{
+    Drops, Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, StreakDraws,
+};
 use rain_render::reflection::{ReflectionMipsGpu, ReflectionMipsTarget};
 use rain_render::ring_layers::{RingLayerGpu, RingLayersGpu};
 use rain_render::slope_mips::SlopeMipsGpu;
@@ -437,7 +439,9 @@ pub(super) fn prepare_rain(
             );
             gpu.mask_bind_groups.insert(entity, bind_group);
         }
-        let Some(shutter) = rain.shutter else { continue };
+        let (Some(shutter), Some(choice)) = (rain.shutter, &rain.choice) else {
+            continue;
+        };
         let panes = rain.panes.seen_from(eye);
         let soft_m = if scene_depth.is_some() { shutter.soft_m } else { 0.0 };
         let draws = StreakDraws {
@@ -452,14 +456,13 @@ pub(super) fn prepare_rain(
         let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
         let lamps = rain.lamps.seen_from(eye, camera.exposure);
         let input = RainfallInput {
-            container: &rain.container,
-            seed: rain.seed,
+            drops: Drops::Chosen(choice),
             clip_from_eye: view.clip_from_view * now,
             clip_from_eye_before: view.clip_from_view * before,
             eye_height_m: eye.y,
             eye_velocity_m_s: rain.motion.velocity_m_s.as_vec3(),
             viewport_px: Vec4::from_array(view.viewport.as_vec4().to_array()),
-            focal_px: rain.focal_px,
+            focal_px: choice.view.focal_px as f32,
             near_m: near,
             shutter: rain_render::rainfall::Shutter { soft_m, ..shutter },
             lighting: view_lighting(&scene, environment, camera.exposure),
@@ -475,7 +478,9 @@ pub(super) fn prepare_rain(
                 .map(|(i, _)| -> &wgpu::TextureView { &i.texture_view }),
         };
         let slot = gpu.views.entry(entity).or_insert_with(|| RainfallViewGpu::new(device));
-        slot.prepare(device, &queue, &gpu.rainfall, &input, textures);
+        if !slot.prepare(device, &queue, &gpu.rainfall, &input, textures) {
+            warn_once!("more rain areas are about a view than its drops can heed; the last are left out");
+        }
     }
     let water = scene.surface.as_ref().and_then(|s| s.images);
     let water = water.iter().flat_map(|i| {

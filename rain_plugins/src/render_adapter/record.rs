@@ -6,13 +6,14 @@ use bevy::prelude::*;
 use bevy::render::diagnostic::RecordDiagnostics;
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::{PipelineCache, StoreOp};
-use bevy::render::renderer::{RenderContext, ViewQuery};
+use bevy::render::renderer::{RenderContext, RenderDevice, ViewQuery};
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::masks::MaskTargets;
 use rain_render::rainfall::{RainfallViewGpu, encode_behind, encode_coverage, encode_draw, encode_project};
 use rain_render::reflection::encode_reflection_mips;
 
+use super::counts::Counts;
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedWaves};
 use super::lattice::LatticeViews;
 use super::prepare::RainGpu;
@@ -200,7 +201,7 @@ pub(super) fn draw_within(pass: &mut wgpu::RenderPass, viewport: UVec4) {
     pass.set_viewport(x, y, width, height, 0.0, 1.0);
 }
 
-/// Projects this frame's drops.
+/// Chooses and projects this frame's drops.
 fn project(ctx: &mut RenderContext, gpu: &RainGpu, view_gpu: &RainfallViewGpu) {
     let recorder = ctx.diagnostic_recorder();
     let recorder = recorder.as_deref();
@@ -213,7 +214,7 @@ fn project(ctx: &mut RenderContext, gpu: &RainGpu, view_gpu: &RainfallViewGpu) {
     span.end(&mut pass);
 }
 
-/// Projects a view's streaks and draws those behind glass, before what is transparent; nothing where there is no glass.
+/// Chooses and projects a view's streaks and draws those behind glass, before what is transparent; nothing where there is no glass.
 pub(super) fn rainfall_behind_glass(
     view: ViewQuery<(
         Entity,
@@ -228,7 +229,7 @@ pub(super) fn rainfall_behind_glass(
 ) {
     let (entity, view, rain, target, depth, msaa) = view.into_inner();
     let of_view = gpu.views.get(&entity).filter(|_| rain.shutter.is_some());
-    let Some(view_gpu) = of_view.filter(|v| v.drops() > 0 && v.panes() > 0) else {
+    let Some(view_gpu) = of_view.filter(|v| v.panes() > 0) else {
         return;
     };
     project(&mut ctx, &gpu, view_gpu);
@@ -238,7 +239,25 @@ pub(super) fn rainfall_behind_glass(
     encode_behind(&mut pass, &gpu.rainfall, view_gpu, view.target_format, msaa.samples());
 }
 
-/// Projects a view's streaks, if that has not been done, and draws them over its colour target, but those behind glass; and
+/// Counts of drops on their way back.
+#[derive(Resource, Default)]
+pub(super) struct DropCounts(Counts);
+
+/// How many drops are drawn, how many of them may have a pattern, how many there would be without a limit.
+const COUNTED_BYTES: u64 = 12;
+
+/// Hands this frame's counts to the report.
+pub(super) fn count_drops(mut counts: ResMut<DropCounts>, report: Res<RainReport>) {
+    let report = report.clone();
+    counts.0.read(move |words| {
+        report.drops(words[0]);
+        if words[2] > words[0] {
+            warn_once!("a rain view holds more than twice its streak budget; the rest is left out");
+        }
+    });
+}
+
+/// Chooses and projects a view's streaks, if that has not been done, and draws them over its colour target, but those behind glass; and
 /// its masks where somebody asked for them.
 pub(super) fn rainfall(
     view: ViewQuery<(
@@ -253,13 +272,12 @@ pub(super) fn rainfall(
     cards: Res<LatticeViews>,
     images: Res<RenderAssets<GpuImage>>,
     report: Res<RainReport>,
+    device: Res<RenderDevice>,
+    mut counts: ResMut<DropCounts>,
     mut ctx: RenderContext,
 ) {
     let (entity, view, rain, target, depth, msaa) = view.into_inner();
-    let view_gpu = gpu
-        .views
-        .get(&entity)
-        .filter(|v| rain.shutter.is_some() && v.drops() > 0);
+    let view_gpu = gpu.views.get(&entity).filter(|_| rain.shutter.is_some());
 
     if let Some(view_gpu) = view_gpu {
         if view_gpu.panes() == 0 {
@@ -279,7 +297,10 @@ pub(super) fn rainfall(
         span.end(&mut pass);
         drop(pass);
         report.recorded(PassName::Rainfall);
-        report.drops(view_gpu.drops());
+        let device = device.wgpu_device();
+        counts
+            .0
+            .copy(device, ctx.command_encoder(), view_gpu.arguments(), COUNTED_BYTES);
     }
 
     let Some(masks) = &rain.masks else { return };

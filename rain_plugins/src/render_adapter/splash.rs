@@ -1,7 +1,6 @@
 //! Splashes: extraction, uploads and commands of each view.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::math::Vec2;
@@ -15,12 +14,13 @@ use bevy::render::sync_world::RenderEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget};
 use rain_render::cover::open_sky;
-use rain_render::gpu_types::{LevelMapParams, SplashDraw};
+use rain_render::gpu_types::LevelMapParams;
 use rain_render::splash::{
     SplashGpu, SplashInput, SplashTextures, SplashViewGpu, SpoutStream, StepSplash, encode_splash_behind,
     encode_splash_coverage, encode_splash_draw, encode_splash_make,
 };
 
+use super::counts::Counts;
 use super::extract::{ExtractedRainScene, ExtractedRainView};
 use super::prepare::{level_params, view_lighting};
 use super::record::{cleared, draw_within, over_scene};
@@ -42,58 +42,14 @@ pub(super) struct SplashViews {
     counts: Counts,
 }
 
-/// Counts on their way back from the GPU; while all of them are, frames go uncounted.
-const COUNTS_UNDER_WAY: usize = 8;
-
-/// Reads back how many parts the draws had; nobody waits for it.
-#[derive(Default)]
-struct Counts {
-    made: usize,
-    /// Copied to in this frame.
-    copied: Vec<wgpu::Buffer>,
-    free: Arc<Mutex<Vec<wgpu::Buffer>>>,
-}
-
-impl Counts {
-    /// Copies a view's draw arguments into a buffer that can be read, if one is free.
-    fn copy(&mut self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, view: &SplashViewGpu) {
-        let free = self.free.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let buffer = match free {
-            Some(buffer) => buffer,
-            None if self.made < COUNTS_UNDER_WAY => {
-                self.made += 1;
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("rain splash count"),
-                    size: size_of::<SplashDraw>() as u64,
-                    usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            }
-            None => return,
-        };
-        encoder.copy_buffer_to_buffer(view.arguments(), 0, &buffer, 0, buffer.size());
-        self.copied.push(buffer);
-    }
-
-    /// The frame's commands are submitted: its counts go to the report when they come.
-    fn read(&mut self, report: &RainReport) {
-        for buffer in self.copied.drain(..) {
-            let (read, report, free) = (buffer.clone(), report.clone(), self.free.clone());
-            buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-                if result.is_ok() {
-                    let words: Vec<SplashDraw> = bytemuck::pod_collect_to_vec(&read.slice(..).get_mapped_range());
-                    read.unmap();
-                    report.splashes(words[0].vertices / 6);
-                    free.lock().unwrap_or_else(PoisonError::into_inner).push(read);
-                }
-            });
-        }
-    }
-}
+/// The first of them: vertices of the parts.
+const COUNTED_BYTES: u64 = 4;
 
 /// Hands this frame's counts to the report.
 pub(super) fn count_splashes(mut splashes: ResMut<SplashViews>, report: Res<RainReport>) {
-    splashes.counts.read(&report);
+    let report = report.clone();
+    // Six vertices a part.
+    splashes.counts.read(move |words| report.splashes(words[0] / 6));
 }
 
 impl FromWorld for SplashViews {
@@ -294,9 +250,12 @@ pub(super) fn splash(
         if view_gpu.panes() == 0 {
             make(&mut ctx, &splashes.gpu, view_gpu);
         }
-        splashes
-            .counts
-            .copy(device.wgpu_device(), ctx.command_encoder(), view_gpu);
+        splashes.counts.copy(
+            device.wgpu_device(),
+            ctx.command_encoder(),
+            view_gpu.arguments(),
+            COUNTED_BYTES,
+        );
         let recorder = ctx.diagnostic_recorder();
         let recorder = recorder.as_deref();
         let mut pass = over_scene(

@@ -58,15 +58,15 @@ impl Above {
             ..Self::default()
         };
         if let Some(frame) = world.get::<RainViewFrame>(camera).filter(|frame| frame.draws()) {
-            let classes = &frame.container.classes;
-            let last = (classes.len() - 1) as f64;
-            above.drops = frame
-                .container
+            let drops = frame.drops();
+            let seed = frame.choice.as_ref().map_or(0, |choice| choice.seed);
+            let last = (drops.classes.len().max(2) - 1) as f64;
+            above.drops = drops
                 .records
                 .iter()
                 .map(|record| {
                     let class = f64::from(record.drop & 15);
-                    (flat(record.position(frame.seed, classes)), class / last)
+                    (flat(record.position(seed, &drops.classes)), class / last)
                 })
                 .collect();
         }

@@ -14,7 +14,7 @@ use rain_render::splash::{SpoutStream, StepSplash};
 use super::feet::{RecentSteps, frame_time_s, keep_steps};
 use super::spouts::{Pouring, SPOUT_REACH_M, in_air};
 use crate::cover::{AirAroundView, CoverMap};
-use crate::rainfall::{RainView, SoftwareAdapter, ViewMotion, fill_containers, view_volume};
+use crate::rainfall::{RainView, SoftwareAdapter, ViewMotion, choose_drops, view_volume};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
 use crate::surface::SurfaceState;
@@ -161,7 +161,7 @@ impl Plugin for SplashPlugin {
             .add_message::<FootSplash>()
             .add_systems(
                 PostUpdate,
-                (keep_steps.after(FootSystems), aim_splashes.after(fill_containers))
+                (keep_steps.after(FootSystems), aim_splashes.after(choose_drops))
                     .chain()
                     .in_set(RainViewSystems::Views),
             );

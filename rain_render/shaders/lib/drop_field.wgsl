@@ -16,6 +16,11 @@ fn rain_drop_place(key: vec3<u32>, index: u32) -> vec3<f32> {
     return vec3<f32>(rain_unit(h.x), rain_unit(h.y), rain_unit(h.z));
 }
 
+// Presence of a drop with this rank where the threshold of its diameter is `limit` > 0: 1 inside, a soft ramp there.
+fn rain_soft_presence(rank: f32, limit: f32) -> f32 {
+    return clamp(0.5 + (1.0 - rank / limit) / (2.0 * RAIN_SOFT_EDGE), 0.0, 1.0);
+}
+
 // Inverse of the reference distribution inside a class, mm. Error: 1e-4 relative to the CPU's.
 fn rain_diameter_mm(exp_min: f32, exp_span: f32, u: f32) -> f32 {
     return -0.5 * log(exp_min - u * exp_span);

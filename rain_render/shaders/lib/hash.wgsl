@@ -21,3 +21,8 @@ fn rain_pcg(key: u32) -> u32 {
 fn rain_unit(h: u32) -> f32 {
     return f32(h >> 8u) * (1.0 / 16777216.0);
 }
+
+// In (0, 1), both ends excluded.
+fn rain_open_unit(h: u32) -> f32 {
+    return (f32(h >> 9u) + 0.5) * (1.0 / 8388608.0);
+}

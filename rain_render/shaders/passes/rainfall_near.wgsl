@@ -27,7 +27,7 @@ struct NearVertex {
 // A corner of a streak of this half width; nothing of one that has no pattern.
 fn corner(which: u32, half: f32, vertex_index: u32) -> NearVertex {
     var quad = no_corner();
-    if (half > 0.0 && has_pattern(half)) {
+    if (which != RAIN_NO_DROP && half > 0.0 && has_pattern(half)) {
         quad = streak_corner(streaks[which], half, OUTLINE_REACH, vertex_index);
         quad.size -= (OUTLINE_REACH - 1.0) * 2.0 * half;
     }

@@ -6,6 +6,8 @@
 @group(0) @binding(3) var cover_map: texture_depth_2d;
 @group(0) @binding(4) var environment: texture_cube<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
+// The first word: how many drops there are.
+@group(0) @binding(6) var<storage, read> arguments: array<u32>;
 
 // Drops are tested against the cover map: 0 not at all, 1 where all fall straight down, 2 else.
 override COVER: u32 = 2u;
@@ -67,7 +69,7 @@ fn behind_glass(place: vec3<f32>) -> bool {
 // Error: 0.02 px in place; 5 % of the optical depth of all drops together.
 @compute @workgroup_size(64)
 fn project(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x >= view.drops) {
+    if (id.x >= arguments[0]) {
         return;
     }
     let record = records[id.x];

@@ -1,16 +1,23 @@
 //! Commands of the pass.
 
-use super::prepare::{RainfallGpu, RainfallViewGpu};
+use super::prepare::{HEAD_WORDS, PROJECT_WORD, RainfallGpu, RainfallViewGpu};
 use crate::overlay::OverlayKey;
+use crate::quad_indices::DRAW_BYTES;
 
-/// Places, covers and projects this frame's drops.
+/// Chooses this frame's drops, unless they are listed; places, covers and projects them.
 pub fn encode_project(pass: &mut wgpu::ComputePass, gpu: &RainfallGpu, view: &RainfallViewGpu) {
     let (Some(bind_group), Some(pipeline)) = (&view.project, gpu.project.get(view.needs)) else {
         return;
     };
+    if view.most == 0 {
+        return;
+    }
+    if let Some(choice) = view.choice.as_ref().filter(|_| view.chooses) {
+        choice.encode(pass, &gpu.choose);
+    }
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, bind_group, &[]);
-    pass.dispatch_workgroups(view.drops.div_ceil(64), 1, 1);
+    pass.dispatch_workgroups_indirect(&view.arguments, 4 * PROJECT_WORD);
 }
 
 /// Draws the projected streaks over a target of `format` with `samples` samples, but those behind glass.
@@ -47,19 +54,21 @@ pub fn encode_coverage(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &Ra
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, key: OverlayKey) {
+    let (all, draws) = (4 * HEAD_WORDS, view.draws());
     if let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key.soft(view.soft))) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, bind_group, &[]);
         // Big vertex-pulling draws: tiny instances waste most of a SIMD batch.
-        gpu.quads.draw(pass, view.drops);
+        gpu.quads.draw(pass, &view.arguments, all, draws);
     }
-    if view.near_drops.is_empty() {
+    if !view.patterned {
         return;
     }
     // Streaks with a pattern, by a pipeline of their own: its fragments would slow all others down.
     if let (Some(bind_group), Some(pipeline)) = (&view.near, gpu.near.get(key)) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, bind_group, &[]);
-        gpu.quads.draw(pass, view.near_drops.len() as u32);
+        gpu.quads
+            .draw(pass, &view.arguments, all + DRAW_BYTES * u64::from(draws), draws);
     }
 }

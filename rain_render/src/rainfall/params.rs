@@ -2,7 +2,10 @@
 
 use glam::{Mat4, Vec3, Vec4};
 use rain_core::hash::pcg3d;
-use rain_core::rainfall::{CLASS_COUNT, Container, DetailLaw, LEAD_CAP_M, LEAD_TIME_S, Lamp, RANGE_CAP_M, SizeClass};
+use rain_core::rainfall::{
+    CLASS_COUNT, ClassPlacement, Container, DetailLaw, DropChoice, LEAD_CAP_M, LEAD_TIME_S, Lamp, RANGE_CAP_M,
+    SizeClass,
+};
 
 use crate::glass::{self, Pane};
 use crate::gpu_types::{CoverParams, RainfallClass, RainfallView};
@@ -41,13 +44,38 @@ pub struct Shutter {
     pub detail: Option<DetailLaw>,
 }
 
+/// The drops of a view.
+#[derive(Debug, Clone, Copy)]
+pub enum Drops<'a> {
+    /// The GPU chooses them.
+    Chosen(&'a DropChoice),
+    /// Those that somebody has listed, of the field with this seed. They are uploaded each frame.
+    Listed(&'a Container, u64),
+}
+
+impl Drops<'_> {
+    /// Where the lattices of their classes stand.
+    #[must_use]
+    pub fn placements(&self) -> Vec<ClassPlacement> {
+        match self {
+            Self::Chosen(choice) => choice.cells().classes.map(|class| class.placement).to_vec(),
+            Self::Listed(container, _) => container.classes.clone(),
+        }
+    }
+
+    fn seed(&self) -> u64 {
+        match self {
+            Self::Chosen(choice) => choice.seed,
+            Self::Listed(_, seed) => *seed,
+        }
+    }
+}
+
 /// One view of the rain.
 #[derive(Debug, Clone, Copy)]
 pub struct RainfallInput<'a> {
-    /// The drops and where their lattices stand.
-    pub container: &'a Container,
-    /// Seed of the drop field.
-    pub seed: u64,
+    /// The drops.
+    pub drops: Drops<'a>,
     /// Clip from eye-relative world (rotation and projection, no translation) at the end of the exposure.
     pub clip_from_eye: Mat4,
     /// The same at the start of the exposure, from positions relative to the *present* eye.
@@ -75,13 +103,14 @@ pub struct RainfallInput<'a> {
 }
 
 impl RainfallInput<'_> {
-    /// The uniform of this view.
+    /// The uniform of this view; `placements` are those of its drops.
     #[must_use]
-    pub fn uniform(&self) -> RainfallView {
+    pub(super) fn uniform(&self, placements: &[ClassPlacement]) -> RainfallView {
+        let seed = self.drops.seed();
         let mut classes = [bytemuck::Zeroable::zeroed(); CLASS_COUNT];
-        for (k, (slot, placement)) in classes.iter_mut().zip(&self.container.classes).enumerate() {
+        for (k, (slot, placement)) in classes.iter_mut().zip(placements).enumerate() {
             let class = SizeClass::new(k);
-            let stream = pcg3d([self.seed as u32, (self.seed >> 32) as u32, k as u32]);
+            let stream = pcg3d([seed as u32, (seed >> 32) as u32, k as u32]);
             let v = placement.velocity_m_s;
             *slot = RainfallClass {
                 cell: placement.eye.cell.extend(0).to_array(),
@@ -115,12 +144,12 @@ impl RainfallInput<'_> {
             contrast: self.shutter.contrast,
             kappa: self.shutter.kappa,
             soft: self.shutter.soft_m,
-            drops: self.container.records.len() as u32,
             lamps,
             panes,
             patterned: u32::from(self.shutter.patterned),
             pad_a: 0,
             pad_b: 0,
+            pad_c: 0,
             cover: self.cover,
             classes,
             lamp,

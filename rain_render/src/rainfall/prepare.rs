@@ -1,12 +1,19 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
+use rain_core::rainfall::DropRecord;
+
 use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::gpu_types::{RainfallView, Streak};
 use crate::overlay::{Overlay, OverlayKey};
-use crate::quad_indices::QuadIndices;
-use crate::rainfall::RainfallInput;
-use crate::rainfall::near::near_drops;
+use crate::quad_indices::{DRAW_BYTES, QUADS_OF_A_DRAW, QuadIndices, draw_words};
+use crate::rainfall::choose::{ChoiceGpu, ChoiceTargets, Choose};
+use crate::rainfall::near::near_reaches;
 use crate::rainfall::project::{Project, ProjectKey};
+use crate::rainfall::{Drops, RainfallInput};
+
+/// Bytes of a drop's record and of its streak.
+const RECORD_BYTES: u64 = size_of::<DropRecord>() as u64;
+const STREAK_BYTES: u64 = size_of::<Streak>() as u64;
 
 /// Format of the coverage mask: blendable everywhere.
 pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
@@ -14,9 +21,20 @@ pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// Format of the depth the rain is tested against.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// Stands in the list of near drops for one that is not drawn.
+pub(crate) const NO_DROP: u32 = u32::MAX;
+
+/// Words of the arguments before those of the draws: how many drops, how many that may have a pattern, how many there would
+/// be without a limit, none; workgroups of the projection, none.
+pub(super) const HEAD_WORDS: u64 = 8;
+
+/// Word at which the workgroups of the projection begin.
+pub(super) const PROJECT_WORD: u64 = 4;
+
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
 pub struct RainfallGpu {
+    pub(super) choose: Choose,
     pub(super) project: Project,
     pub(super) draw: Overlay,
     pub(super) near: Overlay,
@@ -56,14 +74,20 @@ pub struct RainfallViewGpu {
     uniform: wgpu::Buffer,
     records: wgpu::Buffer,
     streaks: wgpu::Buffer,
-    capacity: usize,
-    pub(super) drops: u32,
+    /// As many drops as the buffers hold.
+    capacity: u32,
+    pub(super) most: u32,
     pub(super) panes: u32,
     /// Streaks fade where they meet the scene.
     pub(super) soft: bool,
-    /// Which records may have a streak with a pattern, and as many words for them.
-    pub(super) near_drops: Vec<u32>,
+    /// Near streaks have patterns.
+    pub(super) patterned: bool,
+    /// What is dispatched and drawn: [`HEAD_WORDS`], then the draws of all drops, then those of near ones.
+    pub(super) arguments: wgpu::Buffer,
     near_list: wgpu::Buffer,
+    /// Where the GPU chooses.
+    pub(super) choice: Option<ChoiceGpu>,
+    pub(super) chooses: bool,
     pub(super) needs: ProjectKey,
     pub(super) project: Option<wgpu::BindGroup>,
     pub(super) draw: Option<wgpu::BindGroup>,
@@ -104,6 +128,7 @@ impl RainfallGpu {
             ],
         );
         Self {
+            choose: Choose::new(device),
             project: Project::new(device),
             draw,
             near,
@@ -135,27 +160,38 @@ impl RainfallGpu {
     }
 }
 
+fn buffer(device: &wgpu::Device, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC | usage,
+        mapped_at_creation: false,
+    })
+}
+
 impl RainfallViewGpu {
     /// Buffers for a view, empty.
     #[must_use]
     pub fn new(device: &wgpu::Device) -> Self {
-        let (records, streaks) = Self::buffers(device, 1024);
-        let near_list = Self::list(device, 64);
+        let storage = wgpu::BufferUsages::STORAGE;
         Self {
-            uniform: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("rain rainfall view"),
-                size: size_of::<RainfallView>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
-            records,
-            streaks,
-            capacity: 1024,
-            drops: 0,
+            uniform: buffer(
+                device,
+                "rain rainfall view",
+                size_of::<RainfallView>() as u64,
+                wgpu::BufferUsages::UNIFORM,
+            ),
+            records: buffer(device, "rain drop records", RECORD_BYTES, storage),
+            streaks: buffer(device, "rain streaks", STREAK_BYTES, storage),
+            near_list: buffer(device, "rain near drops", 4, storage),
+            arguments: buffer(device, "rain drop draws", 4 * HEAD_WORDS, storage),
+            capacity: 0,
+            most: 0,
             panes: 0,
             soft: false,
-            near_drops: Vec::new(),
-            near_list,
+            patterned: false,
+            choice: None,
+            chooses: false,
             needs: ProjectKey::default(),
             project: None,
             draw: None,
@@ -163,35 +199,50 @@ impl RainfallViewGpu {
         }
     }
 
-    fn list(device: &wgpu::Device, words: usize) -> wgpu::Buffer {
-        device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("rain near drops"),
-            size: 4 * words as u64,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
+    /// Room for `most` drops.
+    fn grow(&mut self, device: &wgpu::Device, most: u32) {
+        let storage = wgpu::BufferUsages::STORAGE;
+        if most > self.capacity {
+            self.capacity = most.max(1).next_multiple_of(1024);
+            let capacity = u64::from(self.capacity);
+            self.records = buffer(device, "rain drop records", RECORD_BYTES * capacity, storage);
+            self.streaks = buffer(device, "rain streaks", STREAK_BYTES * capacity, storage);
+            self.arguments = buffer(
+                device,
+                "rain drop draws",
+                4 * HEAD_WORDS + 2 * DRAW_BYTES * u64::from(self.capacity.div_ceil(QUADS_OF_A_DRAW)),
+                storage | wgpu::BufferUsages::INDIRECT,
+            );
+        }
+        if self.patterned && self.near_list.size() < 4 * u64::from(most) {
+            self.near_list = buffer(device, "rain near drops", 4 * u64::from(self.capacity), storage);
+        }
     }
 
-    fn buffers(device: &wgpu::Device, capacity: usize) -> (wgpu::Buffer, wgpu::Buffer) {
-        let buffer = |label, bytes: usize, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes as u64,
-                usage: wgpu::BufferUsages::STORAGE | usage,
-                mapped_at_creation: false,
-            })
-        };
-        (
-            buffer("rain drop records", capacity * 8, wgpu::BufferUsages::COPY_DST),
-            buffer(
-                "rain streaks",
-                capacity * size_of::<Streak>(),
-                wgpu::BufferUsages::COPY_SRC,
-            ),
-        )
+    /// Draws that the drops are divided into.
+    pub(super) fn draws(&self) -> u32 {
+        self.most.div_ceil(QUADS_OF_A_DRAW)
+    }
+
+    /// Uploads a list of drops. Any of them may be near.
+    fn list(&mut self, queue: &wgpu::Queue, records: &[DropRecord]) {
+        let drops = self.most;
+        let near = if self.patterned { drops } else { 0 };
+        let mut words = vec![drops, near, drops, 0, drops.div_ceil(64), 1, 1, 0];
+        words.extend(draw_words(drops, self.draws()).chain(draw_words(near, self.draws())));
+        queue.write_buffer(&self.arguments, 0, bytemuck::cast_slice(&words));
+        if !records.is_empty() {
+            queue.write_buffer(&self.records, 0, bytemuck::cast_slice(records));
+        }
+        if near > 0 {
+            let all: Vec<u32> = (0..near).collect();
+            queue.write_buffer(&self.near_list, 0, bytemuck::cast_slice(&all));
+        }
     }
 
     /// Uploads a view's inputs and binds its textures. Call once a frame, before encoding.
+    ///
+    /// `false`: more rain areas are about the view than fit; the last are left out.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -199,29 +250,41 @@ impl RainfallViewGpu {
         gpu: &RainfallGpu,
         input: &RainfallInput,
         textures: RainfallTextures,
-    ) {
-        let records = &input.container.records;
-        self.drops = records.len() as u32;
-        let uniform = input.uniform();
+    ) -> bool {
+        let placements = input.drops.placements();
+        let uniform = input.uniform(&placements);
+        self.most = match input.drops {
+            Drops::Chosen(choice) => choice.most_drops,
+            Drops::Listed(container, _) => container.records.len() as u32,
+        };
         self.panes = uniform.panes;
         self.soft = uniform.soft > 0.0;
-        self.needs = ProjectKey::of(input, &uniform);
+        self.patterned = uniform.patterned > 0;
+        self.needs = ProjectKey::of(&uniform);
         gpu.project.prepare(device, self.needs);
-        near_drops(input, &mut self.near_drops);
-        if records.len() > self.capacity {
-            self.capacity = records.len().next_power_of_two();
-            (self.records, self.streaks) = Self::buffers(device, self.capacity);
-        }
+        self.grow(device, self.most);
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        if 4 * self.near_drops.len() as u64 > self.near_list.size() {
-            self.near_list = Self::list(device, self.near_drops.len().next_power_of_two());
+        let mut whole = true;
+        self.chooses = matches!(input.drops, Drops::Chosen(_));
+        match input.drops {
+            Drops::Listed(container, _) => self.list(queue, &container.records),
+            Drops::Chosen(choice) => {
+                let targets = ChoiceTargets {
+                    view: &self.uniform,
+                    arguments: &self.arguments,
+                    records: &self.records,
+                    near: &self.near_list,
+                };
+                let reaches = near_reaches(input, &placements);
+                let chooser = self.choice.get_or_insert_with(|| ChoiceGpu::new(device));
+                whole = chooser.prepare(device, queue, &gpu.choose, choice, &reaches, &targets);
+            }
         }
-        if !self.near_drops.is_empty() {
-            queue.write_buffer(&self.near_list, 0, bytemuck::cast_slice(&self.near_drops));
-        }
-        if !records.is_empty() {
-            queue.write_buffer(&self.records, 0, bytemuck::cast_slice(records));
-        }
+        self.bind(device, gpu, textures);
+        whole
+    }
+
+    fn bind(&mut self, device: &wgpu::Device, gpu: &RainfallGpu, textures: RainfallTextures) {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view =
             |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();
@@ -238,6 +301,7 @@ impl RainfallViewGpu {
                 entry(3, wgpu::BindingResource::TextureView(&cover)),
                 entry(4, wgpu::BindingResource::TextureView(&environment)),
                 entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
+                entry(6, self.arguments.as_entire_binding()),
             ],
         }));
         let even = [
@@ -266,10 +330,29 @@ impl RainfallViewGpu {
         }));
     }
 
-    /// Number of drops uploaded for this frame.
+    /// No more drops than this are drawn in this frame: as many as there are where they are listed.
     #[must_use]
-    pub fn drops(&self) -> u32 {
-        self.drops
+    pub fn most_drops(&self) -> u32 {
+        self.most
+    }
+
+    /// What is dispatched and drawn, for reading back. The first three words: how many drops are drawn, how many of them may
+    /// have a pattern, how many there would be without a limit.
+    #[must_use]
+    pub fn arguments(&self) -> &wgpu::Buffer {
+        &self.arguments
+    }
+
+    /// The drops that are drawn, for reading back: [`DropRecord`]s.
+    #[must_use]
+    pub fn records(&self) -> &wgpu::Buffer {
+        &self.records
+    }
+
+    /// Which of them may have a pattern, for reading back.
+    #[must_use]
+    pub fn near_drops(&self) -> &wgpu::Buffer {
+        &self.near_list
     }
 
     /// How much that is transparent this frame tells apart.
@@ -281,7 +364,15 @@ impl RainfallViewGpu {
     /// GPU memory of this view. Units: bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<RainfallView>() + self.capacity * (8 + size_of::<Streak>()) + self.near_list.size() as usize
+        let own = [
+            &self.uniform,
+            &self.records,
+            &self.streaks,
+            &self.near_list,
+            &self.arguments,
+        ];
+        let own: u64 = own.into_iter().map(wgpu::Buffer::size).sum();
+        (own + self.choice.as_ref().map_or(0, ChoiceGpu::memory_bytes)) as usize
     }
 
     /// The projected streaks, for reading back.

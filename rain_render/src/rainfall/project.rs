@@ -3,7 +3,6 @@
 
 use std::sync::OnceLock;
 
-use super::RainfallInput;
 use crate::bindings::{compute_pipeline_with, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::RainfallView;
@@ -38,10 +37,12 @@ impl ProjectKey {
     };
 
     /// What a view needs.
-    pub fn of(input: &RainfallInput, view: &RainfallView) -> Self {
-        let falls = |v: glam::Vec3| v.x == 0.0 && v.z == 0.0;
-        let straight =
-            view.cover.wind == [0.0; 2] && input.container.classes.iter().all(|class| falls(class.velocity_m_s));
+    pub fn of(view: &RainfallView) -> Self {
+        let straight = view.cover.wind == [0.0; 2]
+            && view
+                .classes
+                .iter()
+                .all(|class| class.velocity[0] == 0.0 && class.velocity[2] == 0.0);
         Self {
             cover: match (view.cover.present < 0.5, straight) {
                 (true, _) => CoverTest::Open,
@@ -94,6 +95,7 @@ impl Project {
                     wgpu::TextureViewDimension::Cube,
                 ),
                 sampler_entry(5, compute),
+                storage_entry(6, compute, true),
             ],
         });
         let project = Self {

@@ -2,14 +2,14 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use rain_core::rainfall::{
-    CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, FADE_END, FieldMotion, Lamp, RainViewVolume, SizeClass,
-    Spectrum, Thinning, terminal_velocity, visible_range_m,
+    CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, DropChoice, FADE_END, FieldMotion, Lamp,
+    RainViewVolume, SizeClass, Spectrum, terminal_velocity, visible_range_m,
 };
 use rain_render::cover::open_sky;
 use rain_render::glass::Pane;
 use rain_render::gpu_types::Streak;
 use rain_render::rainfall::{
-    Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, Shutter, encode_project,
+    Drops, Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, Shutter, encode_project,
 };
 
 use crate::device::{Device, device, kernel, library};
@@ -63,12 +63,12 @@ impl FieldView {
         )
     }
 
-    /// The drops that this view draws at a spectrum.
-    pub fn container(&self, seed: u64, spectrum: &Spectrum) -> Container {
+    /// What its drops are chosen from at a spectrum.
+    pub fn choice(&self, seed: u64, spectrum: &Spectrum) -> DropChoice {
         let ty = (0.5 * self.fov_y).tan();
         let tx = ty * self.size.x / self.size.y;
         let plane = |n: Vec3| n.normalize().extend(0.0);
-        let volume = RainViewVolume {
+        let view = RainViewVolume {
             eye_m: self.eye_m,
             eye_velocity_m_s: self.eye_velocity_m_s,
             side_planes: [
@@ -84,22 +84,37 @@ impl FieldView {
         let mut motion = FieldMotion::default();
         motion.set_velocity(self.wind_m_s, 1.2041);
         motion.advance(self.seconds);
-        let mut container = Container::default();
-        let thinning = Thinning {
+        DropChoice {
+            seed,
+            spectrum: *spectrum,
+            motion,
+            view,
+            kappa: self.kappa,
+            most_drops: 1 << 21,
+            uneven: None,
+            region: None,
             detail: self.detail,
-            ..Thinning::default()
-        };
-        assert!(container.fill_local(seed, spectrum, &motion, &volume, self.kappa, 1 << 21, &thinning));
+        }
+    }
+
+    /// The drops that this view draws at a spectrum.
+    pub fn container(&self, seed: u64, spectrum: &Spectrum) -> Container {
+        let mut container = Container::default();
+        assert!(self.choice(seed, spectrum).fill(&mut container));
         container
     }
 
     /// What the nodes are given of them: contrast 1, even light under an open sky.
     pub fn input<'a>(&'a self, seed: u64, container: &'a Container) -> RainfallInput<'a> {
+        self.input_of(Drops::Listed(container, seed))
+    }
+
+    /// The same for any drops.
+    pub fn input_of<'a>(&'a self, drops: Drops<'a>) -> RainfallInput<'a> {
         let now = self.clip_from_eye();
         let shift = self.eye_velocity_m_s.as_vec3() * self.exposure_s;
         RainfallInput {
-            container,
-            seed,
+            drops,
             clip_from_eye: now,
             clip_from_eye_before: now * Mat4::from_translation(shift),
             eye_height_m: self.eye_m.y as f32,

@@ -5,6 +5,7 @@ mod beads;
 mod caustics;
 mod cover_parity;
 mod device;
+mod drop_choice;
 mod far;
 mod far_rain;
 mod field_parity;

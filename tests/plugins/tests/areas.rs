@@ -124,11 +124,12 @@ fn drops_are_in_the_area_alone_and_no_pass_is_recorded_when_none_is_near() {
     let places = |test: &mut TestApp| -> Vec<Vec3> {
         let eye = test.world().get::<Transform>(camera).expect("a camera").translation;
         let frame = test.world().get::<RainViewFrame>(camera).expect("a rain view");
-        let container = &frame.container;
-        container
+        let seed = frame.choice.as_ref().expect("rain").seed;
+        let drops = frame.drops();
+        drops
             .records
             .iter()
-            .map(|r| eye + r.position(frame.seed, &container.classes))
+            .map(|r| eye + r.position(seed, &drops.classes))
             .collect()
     };
     let drops = places(&mut test);

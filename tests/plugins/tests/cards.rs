@@ -203,7 +203,7 @@ fn streaks_and_cards_take_out_the_light_that_the_account_gives_them() {
         let focal_px = test
             .world()
             .get::<RainViewFrame>(camera)
-            .map_or(0.0, |frame| f64::from(frame.focal_px));
+            .map_or(0.0, RainViewFrame::focal_px);
         let range = DrawRange {
             kappa,
             focal_px,

@@ -171,7 +171,7 @@ fn drawn_drops_and_haze_are_the_whole_rain() {
         let shutter = frame.shutter.expect("it rains");
         let range = DrawRange {
             kappa: shutter.kappa.into(),
-            focal_px: frame.focal_px.into(),
+            focal_px: frame.focal_px(),
             exposure_s: shutter.exposure_s.into(),
         };
         let field = test.world().resource::<RainfallField>();

@@ -21,11 +21,12 @@ fn drops(test: &mut TestApp, camera: Entity) -> BTreeSet<[i64; 3]> {
         .as_dvec3();
     let frame = test.world().get::<RainViewFrame>(camera).expect("a rain view");
     let place = |p: Vec3| (p.as_dvec3() + eye).to_array().map(|v| (v * 2000.0).round() as i64);
-    frame
-        .container
+    let seed = frame.choice.as_ref().expect("rain").seed;
+    let drops = frame.drops();
+    drops
         .records
         .iter()
-        .map(|r| place(r.position(frame.seed, &frame.container.classes)))
+        .map(|r| place(r.position(seed, &drops.classes)))
         .collect()
 }
 

@@ -2,11 +2,11 @@
 
 use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use rain_core::rainfall::{
-    Container, Distribution, FieldMotion, RainViewVolume, Spectrum, Thinning, quality_for_budget,
+    Container, Distribution, DropChoice, FieldMotion, RainViewVolume, Spectrum, quality_for_budget,
 };
 use rain_render::cover::open_sky;
 use rain_render::gpu_types::Streak;
-use rain_render::rainfall::{Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, Shutter};
+use rain_render::rainfall::{Drops, Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, Shutter};
 
 /// The picture. Units: px.
 pub const SIZE: [u32; 2] = [1280, 720];
@@ -28,6 +28,9 @@ pub const EXPOSURE_S: f32 = 1.0 / 60.0;
 
 /// Contrast, the plugins' default.
 pub const CONTRAST: f32 = 4.0;
+
+/// No more drops are looked for.
+const MOST_DROPS: u32 = 1 << 19;
 
 /// Seed of the drop field.
 pub const SEED: u64 = 9;
@@ -120,29 +123,25 @@ pub fn quads_of(streaks: &[Streak]) -> impl Iterator<Item = (Vec2, Vec2, f32)> +
     })
 }
 
-/// The view's drops at quality `kappa`.
+/// What the view's drops are chosen from at quality `kappa`.
 ///
 /// # Errors
-/// When there are more than any comparison needs.
-pub fn container(kappa: f64) -> Result<Container, String> {
-    let spectrum = spectrum()?;
+/// When there is no such rain.
+pub fn choice(kappa: f64) -> Result<DropChoice, String> {
     let mut motion = FieldMotion::default();
     motion.set_velocity(DVec3::ZERO, 1.2041);
     motion.advance(1234.5);
-    let mut container = Container::default();
-    if container.fill_local(
-        SEED,
-        &spectrum,
-        &motion,
-        &volume(),
+    Ok(DropChoice {
+        seed: SEED,
+        spectrum: spectrum()?,
+        motion,
+        view: volume(),
         kappa,
-        1 << 22,
-        &Thinning::default(),
-    ) {
-        Ok(container)
-    } else {
-        Err("the view holds more than four million drops".into())
-    }
+        most_drops: MOST_DROPS,
+        uneven: None,
+        region: None,
+        detail: None,
+    })
 }
 
 fn spectrum() -> Result<Spectrum, String> {
@@ -175,10 +174,10 @@ pub struct Field {
     pub gpu: RainfallGpu,
     /// The view's buffers.
     pub view: RainfallViewGpu,
-    /// Its drops.
-    pub container: Container,
-    /// Their quality.
-    kappa: f32,
+    /// What its drops are chosen from.
+    pub choice: DropChoice,
+    /// How many of them there are.
+    pub drops: u32,
     /// What is seen of them.
     pub shown: Shown,
 }
@@ -194,23 +193,23 @@ impl Field {
         let spectrum = spectrum()?;
         let mut budget = f64::from(count);
         for _ in 0..8 {
-            let kappa = quality_for_budget(&spectrum, &volume(), budget);
-            let container = container(kappa)?;
-            let streaks = project(
-                device,
-                queue,
-                &gpu,
-                &mut view,
-                &input(&container, SEED, kappa as f32, 0.0),
-            )?;
+            let choice = choice(quality_for_budget(&spectrum, &volume(), budget))?;
+            let streaks = project(device, queue, &gpu, &mut view, &input(&choice, 0.0))?;
             let shown = shown(quads_of(&streaks));
             let ratio = f64::from(count) / f64::from(shown.visible.max(1));
             if (ratio - 1.0).abs() <= 0.5 * TOLERANCE {
+                let drops = streaks.len() as u32;
+                // Memory and draws as for a budget of so many.
+                let choice = DropChoice {
+                    most_drops: 2 * drops + 1024,
+                    ..choice
+                };
+                project(device, queue, &gpu, &mut view, &input(&choice, 0.0))?;
                 return Ok(Self {
                     gpu,
                     view,
-                    container,
-                    kappa: kappa as f32,
+                    choice,
+                    drops,
                     shown,
                 });
             }
@@ -233,17 +232,26 @@ impl Field {
             scene_depth: depth,
             ..RainfallTextures::default()
         };
-        let input = input(&self.container, SEED, self.kappa, soft_m);
-        self.view.prepare(device, queue, &self.gpu, &input, textures);
+        self.view
+            .prepare(device, queue, &self.gpu, &input(&self.choice, soft_m), textures);
+    }
+
+    /// Uploads the drops as a list.
+    pub fn listed(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, container: &Container) {
+        let input = RainfallInput {
+            drops: Drops::Listed(container, SEED),
+            ..input(&self.choice, 0.0)
+        };
+        self.view
+            .prepare(device, queue, &self.gpu, &input, RainfallTextures::default());
     }
 }
 
 /// The view's inputs.
 #[must_use]
-pub fn input(container: &Container, seed: u64, kappa: f32, soft_m: f32) -> RainfallInput<'_> {
+pub fn input(choice: &DropChoice, soft_m: f32) -> RainfallInput<'_> {
     RainfallInput {
-        container,
-        seed,
+        drops: Drops::Chosen(choice),
         clip_from_eye: clip_from_eye(),
         clip_from_eye_before: clip_from_eye(),
         eye_height_m: 1.7,
@@ -254,7 +262,7 @@ pub fn input(container: &Container, seed: u64, kappa: f32, soft_m: f32) -> Rainf
         shutter: Shutter {
             exposure_s: EXPOSURE_S,
             contrast: CONTRAST,
-            kappa,
+            kappa: choice.kappa as f32,
             soft_m,
             patterned: false,
             detail: None,
@@ -272,6 +280,33 @@ pub fn input(container: &Container, seed: u64, kappa: f32, soft_m: f32) -> Rainf
     }
 }
 
+/// The first words of a buffer.
+fn read<T: bytemuck::Pod>(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    buffer: &wgpu::Buffer,
+    count: u32,
+) -> Result<Vec<T>, String> {
+    let bytes = u64::from(count) * size_of::<T>() as u64;
+    if bytes == 0 {
+        return Ok(Vec::new());
+    }
+    let copy = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: bytes,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes);
+    queue.submit([encoder.finish()]);
+    copy.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+    device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .map_err(|error| error.to_string())?;
+    Ok(bytemuck::pod_collect_to_vec(&copy.slice(..).get_mapped_range()))
+}
+
 /// The streaks that the pass makes of `input`'s drops.
 ///
 /// # Errors
@@ -284,26 +319,12 @@ pub fn project(
     input: &RainfallInput,
 ) -> Result<Vec<Streak>, String> {
     view.prepare(device, queue, gpu, input, RainfallTextures::default());
-    let bytes = (view.drops() as usize * size_of::<Streak>()) as u64;
-    if bytes == 0 {
-        return Ok(Vec::new());
-    }
-    let copy = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("streaks"),
-        size: bytes,
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         rain_render::rainfall::encode_project(&mut pass, gpu, view);
     }
-    encoder.copy_buffer_to_buffer(view.streaks(), 0, &copy, 0, bytes);
     queue.submit([encoder.finish()]);
-    copy.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    device
-        .poll(wgpu::PollType::wait_indefinitely())
-        .map_err(|error| error.to_string())?;
-    Ok(bytemuck::pod_collect_to_vec(&copy.slice(..).get_mapped_range()))
+    let drops: Vec<u32> = read(device, queue, view.arguments(), 1)?;
+    read(device, queue, view.streaks(), drops[0])
 }

@@ -1,5 +1,6 @@
 //! Our pass and the bare one, timed in turn.
 
+use rain_core::rainfall::Container;
 use rain_render::rainfall::{DEPTH_FORMAT, StreakDraws, encode_draw, encode_project};
 
 use crate::clock::{Moment, Passed, Summary};
@@ -20,13 +21,17 @@ pub struct PassTimes {
     pub soft: Summary,
     /// The bare quads.
     pub bare: Summary,
-    /// The compute pass before.
+    /// The compute pass before: drops are chosen and projected.
     pub project: Summary,
+    /// The same where they are listed already.
+    pub listed: Summary,
+    /// Listing them on the CPU.
+    pub list: Summary,
     /// The empty pass.
     pub empty: Summary,
     /// What was drawn.
     pub shown: Shown,
-    /// Drops uploaded, seen or not.
+    /// Drops that are drawn, seen or not.
     pub drops: u32,
 }
 
@@ -167,7 +172,13 @@ pub fn times(count: u32, pairs: usize) -> Result<PassTimes, String> {
             resource: hard.view.streaks().as_entire_binding(),
         }],
     });
-    let drops = hard.view.drops();
+    let drops = hard.drops;
+    let mut listed = Field::new(&device, &queue, count)?;
+    let mut container = Container::default();
+    if !listed.choice.fill(&mut container) {
+        return Err("there are more drops than before".into());
+    }
+    listed.listed(&device, &queue, &container);
     let timed = |record: &dyn Fn(&mut wgpu::CommandEncoder)| -> Result<Passed, String> {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         record(&mut encoder);
@@ -191,7 +202,7 @@ pub fn times(count: u32, pairs: usize) -> Result<PassTimes, String> {
     timed(&|encoder| drop(begin(encoder, &targets.colour, &targets.depth, true)))?;
     timed(&|encoder| drop(begin(encoder, &targets.colour, &targets.scene, true)))?;
     timed(&|encoder| project(encoder, &soft))?;
-    let mut all = [const { Vec::new() }; 5];
+    let mut all = [const { Vec::new() }; 7];
     // The first rounds compile shaders and touch memory.
     for round in 0..pairs + 2 {
         let times = [
@@ -205,6 +216,13 @@ pub fn times(count: u32, pairs: usize) -> Result<PassTimes, String> {
             timed(&|encoder| draw(encoder, &hard))?,
             timed(&|encoder| draw(encoder, &soft))?,
             timed(&|encoder| project(encoder, &hard))?,
+            timed(&|encoder| project(encoder, &listed))?,
+            {
+                let from = Moment::now();
+                let whole = listed.choice.fill(&mut container);
+                std::hint::black_box(whole);
+                from.passed()
+            },
         ];
         if round >= 2 {
             for (list, time) in all.iter_mut().zip(times) {
@@ -212,12 +230,14 @@ pub fn times(count: u32, pairs: usize) -> Result<PassTimes, String> {
             }
         }
     }
-    let [empty, bare, draw, soft, project] = all.map(|list| Summary::of(&list));
+    let [empty, bare, draw, soft, project, listed, list] = all.map(|list| Summary::of(&list));
     Ok(PassTimes {
         draw: draw.over(empty),
         soft: soft.over(empty),
         bare: bare.over(empty),
         project,
+        listed,
+        list,
         empty,
         shown: hard.shown,
         drops,

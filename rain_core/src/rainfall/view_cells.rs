@@ -1,0 +1,211 @@
+//! Which cells of the drop field's lattices may hold drops of a view: for each class the smallest block about those within
+//! reach and inside the view's side planes.
+
+use glam::{DVec3, IVec3, UVec3, Vec3, Vec4};
+
+use super::classes::{CLASS_COUNT, SizeClass};
+use super::container::{CELL_BIAS, ClassPlacement, DrawRange, FADE_END, LEAD_CAP_M, LEAD_TIME_S, RainViewVolume};
+use super::field::{FieldMotion, LatticeEye};
+use super::spectrum::Spectrum;
+
+/// Cells of one class's lattice that may hold drops of a view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClassCells {
+    /// Where the lattice stands.
+    pub placement: ClassPlacement,
+    /// The lowest of them, from the eye's cell.
+    pub low: IVec3,
+    /// How many along each axis: none of a class that has no drops.
+    pub side: UVec3,
+    /// The largest drop of the class is drawn so far from the lead, fade included. Units: m.
+    pub reach_m: f32,
+    /// Every drop of the class is drawn so far; a little less, for rounding. Units: m.
+    pub least_reach_m: f32,
+    /// A streak reaches back so far, along its path relative to the eye. Units: m.
+    pub streak_m: f32,
+}
+
+/// Which cells of all classes may hold drops of a view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViewCells {
+    /// By class.
+    pub classes: [ClassCells; CLASS_COUNT],
+    /// Distances count from the segment between the eye and this, ahead of a fast one. Units: m.
+    pub lead_m: Vec3,
+}
+
+impl ViewCells {
+    /// The cells at quality `kappa` (none) under `spectrum`, or wherever it may rain: `anywhere`. Clamps as
+    /// [`Container::fill`](super::Container::fill).
+    ///
+    /// Error: none is missing; the blocks hold others as well, which are not within reach or outside two planes together.
+    #[must_use]
+    pub fn new(spectrum: &Spectrum, motion: &FieldMotion, view: &RainViewVolume, kappa: f64, anywhere: bool) -> Self {
+        let range = DrawRange::of(view, kappa);
+        let eye_velocity = if view.eye_velocity_m_s.is_finite() {
+            view.eye_velocity_m_s
+        } else {
+            DVec3::ZERO
+        };
+        let lead_m = (eye_velocity * LEAD_TIME_S).clamp_length_max(LEAD_CAP_M).as_vec3();
+        let raining = (spectrum.n0_per_m3_mm > 0.0 || anywhere) && kappa > 0.0;
+        let sees = !view.side_planes.iter().any(|plane| plane.is_nan());
+        let classes = core::array::from_fn(|k| {
+            let class = SizeClass::new(k);
+            let placement = ClassPlacement {
+                eye: LatticeEye::new(view.eye_m, motion.offset_m[k], class.cell_m),
+                velocity_m_s: motion.velocity_m_s[k].as_vec3(),
+            };
+            let relative = placement.velocity_m_s - eye_velocity.as_vec3();
+            let cell_m = class.cell_m as f32;
+            let reach_m = (FADE_END * range.at(class.max_mm)) as f32;
+            let streak_m = relative.length() * view.exposure_s as f32;
+            // A drop is kept within the margin of its streak; a little more, for rounding.
+            let margin = streak_m + 0.02;
+            let extent = |axis: Vec3| extent_m(&view.side_planes, margin, reach_m, lead_m, axis);
+            let low = -Vec3::from_array(Vec3::AXES.map(|axis| extent(-axis)));
+            let high = Vec3::from_array(Vec3::AXES.map(extent));
+            let bound = IVec3::splat(CELL_BIAS);
+            let low = (low / cell_m + placement.eye.fraction).floor().as_ivec3().max(-bound);
+            let high = (high / cell_m + placement.eye.fraction)
+                .floor()
+                .as_ivec3()
+                .min(bound - 1);
+            let side = (high - low + 1).max(IVec3::ZERO).as_uvec3();
+            ClassCells {
+                placement,
+                low,
+                side: if raining && sees && reach_m > 0.0 {
+                    side
+                } else {
+                    UVec3::ZERO
+                },
+                reach_m,
+                least_reach_m: (FADE_END * (1.0 - 1e-5) * range.at(class.min_mm)) as f32,
+                streak_m,
+            }
+        });
+        Self { classes, lead_m }
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.classes.iter().map(|class| class.side.element_product()).sum()
+    }
+}
+
+/// How far places within `reach` of the lead and a margin of the planes extend along an axis (unit), at most. Units: m.
+///
+/// Any λ ≥ 0 bounds it: a·x ≤ (a + Σ λ n)·x + Σ λ (margin + w) there. The best of each pair of planes is taken.
+fn extent_m(planes: &[Vec4; 4], margin: f32, reach: f32, lead: Vec3, axis: Vec3) -> f32 {
+    let bound = |left: Vec3, slack: f32| left.length() * reach + left.dot(lead).max(0.0) + slack;
+    let mut least = bound(axis, 0.0);
+    let mut take = |terms: [(f32, Vec4); 2]| {
+        if terms.iter().all(|(share, _)| share.is_finite() && *share >= 0.0) {
+            let left = terms
+                .iter()
+                .fold(axis, |left, (share, plane)| left + *share * plane.truncate());
+            let slack: f32 = terms
+                .iter()
+                .map(|(share, plane)| share * (margin + plane.w).max(0.0))
+                .sum();
+            let found = bound(left, slack);
+            if found < least {
+                least = found;
+            }
+        }
+    };
+    for (i, first) in planes.iter().enumerate() {
+        let (n, along) = (first.truncate(), axis.dot(first.truncate()));
+        take([(-along / n.length_squared(), *first), (0.0, *first)]);
+        for second in &planes[i + 1..] {
+            let m = second.truncate();
+            let (nn, nm, mm) = (n.length_squared(), n.dot(m), m.length_squared());
+            let determinant = nn * mm - nm * nm;
+            let beside = axis.dot(m);
+            take([
+                ((beside * nm - along * mm) / determinant, *first),
+                ((along * nm - beside * nn) / determinant, *second),
+            ]);
+        }
+    }
+    // What is left of a sum that cancels is rounding.
+    least + 1e-5 * (reach + lead.length())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 60° vertical, 16:9, looking along −Z.
+    fn planes() -> [Vec4; 4] {
+        let ty = 30.0_f32.to_radians().tan();
+        let tx = ty * 16.0 / 9.0;
+        [
+            Vec3::new(1.0, 0.0, -tx),
+            Vec3::new(-1.0, 0.0, -tx),
+            Vec3::new(0.0, 1.0, -ty),
+            Vec3::new(0.0, -1.0, -ty),
+        ]
+        .map(|n| n.normalize().extend(0.0))
+    }
+
+    #[test]
+    fn a_view_reaches_to_its_corners_and_hardly_behind_itself() {
+        let extent = |axis| extent_m(&planes(), 0.0, 10.0, Vec3::ZERO, axis);
+        // The sphere at the middle of a side: sin of half the angle.
+        let half = (30.0_f32.to_radians().tan() * 16.0 / 9.0).atan();
+        for (axis, expected) in [
+            (Vec3::X, 10.0 * half.sin()),
+            (Vec3::NEG_Y, 5.0),
+            (Vec3::NEG_Z, 10.0),
+            (Vec3::Z, 0.0),
+        ] {
+            assert!((extent(axis) - expected).abs() < 1e-3, "{axis}: {}", extent(axis));
+        }
+        // A margin of 0.1 m lets in what is 0.1 m/sin behind the corner.
+        let behind = extent_m(&planes(), 0.1, 10.0, Vec3::ZERO, Vec3::Z);
+        assert!(behind > 0.1 && behind < 0.21, "{behind}");
+        // Ahead of a fast eye.
+        let ahead = extent_m(&planes(), 0.0, 10.0, Vec3::NEG_Z * 4.0, Vec3::NEG_Z);
+        assert!((ahead - 14.0).abs() < 1e-3, "{ahead}");
+    }
+
+    #[test]
+    fn no_place_inside_is_left_out_whatever_the_planes() {
+        let mut word = 1_u32;
+        let mut random = || {
+            word = crate::hash::pcg(word);
+            2.0 * crate::hash::unit_f32(word) - 1.0
+        };
+        let mut inside = 0;
+        for round in 0..60 {
+            let mut planes = planes();
+            if round % 2 == 1 {
+                planes = core::array::from_fn(|_| {
+                    Vec3::new(random(), random(), random())
+                        .normalize_or(Vec3::X)
+                        .extend(0.1 * random())
+                });
+            }
+            let lead = Vec3::new(random(), random(), random()) * f32::from(u8::from(round % 3 == 0)) * 5.0;
+            let (reach, margin) = (3.0 + random(), 0.1);
+            let extents = Vec3::AXES.map(|axis| [axis, -axis].map(|axis| extent_m(&planes, margin, reach, lead, axis)));
+            for _ in 0..2000 {
+                let p = Vec3::new(random(), random(), random()) * reach;
+                if p.length() > reach {
+                    continue;
+                }
+                let p = p + lead * (0.5 + 0.5 * random());
+                if planes.iter().all(|plane| plane.truncate().dot(p) + plane.w >= -margin) {
+                    inside += 1;
+                    for (v, [high, low]) in p.to_array().into_iter().zip(extents) {
+                        assert!(v <= high && -v <= low, "{p} {extents:?}");
+                    }
+                }
+            }
+        }
+        assert!(inside > 5000, "{inside}");
+    }
+}

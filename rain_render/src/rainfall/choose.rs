@@ -1,0 +1,391 @@
+//! Choosing the drops of a view on the GPU: nothing that grows with their number goes up or comes back.
+//!
+//! Cells are counted, counts summed up, and drops listed in the order of their cells, so that the list is the same each time.
+//! A software device runs masked-off code too: there uneven rain and what thins it are in the pipelines of views that have
+//! them only. A GPU has one set, so that the first shower makes no frame wait.
+
+use std::sync::OnceLock;
+
+use glam::{Vec3, Vec4};
+use rain_core::rainfall::areas::{AreaFieldF32, MAX_PACKED_ROWS};
+use rain_core::rainfall::{
+    CLASS_COUNT, DetailLaw, DropChoice, Follow, FollowSettings, FollowShape, RateLadder, SizeClass, Threshold,
+    UnevenRain, ViewCells,
+};
+
+use crate::bindings::{compute_pipeline_with, storage_entry, uniform_entry};
+use crate::compose;
+use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
+use crate::quad_indices::QUADS_OF_A_DRAW;
+
+/// Cells of a group, as the shader has it.
+const GROUP: u32 = 64;
+
+/// Groups are dispatched in rows of this many, as the shader has it.
+const ROW: u32 = 32_768;
+
+/// What the choices of views differ by.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+struct ChoiceKey {
+    uneven: bool,
+    thinned: bool,
+}
+
+impl ChoiceKey {
+    const EVERYTHING: Self = Self {
+        uneven: true,
+        thinned: true,
+    };
+
+    fn index(self) -> usize {
+        usize::from(self.uneven) + 2 * usize::from(self.thinned)
+    }
+}
+
+#[derive(Debug)]
+struct Pipelines {
+    count: wgpu::ComputePipeline,
+    sum: wgpu::ComputePipeline,
+    scan: wgpu::ComputePipeline,
+    list: wgpu::ComputePipeline,
+}
+
+/// The layout and the pipelines.
+#[derive(Debug)]
+pub(super) struct Choose {
+    layout: wgpu::BindGroupLayout,
+    module: wgpu::ShaderModule,
+    /// Views have pipelines of their own.
+    apart: bool,
+    pipelines: [OnceLock<Pipelines>; 4],
+}
+
+impl Choose {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let mut entries = vec![
+            uniform_entry(0, compute, size_of::<RainfallView>()),
+            uniform_entry(1, compute, size_of::<RainfallChoice>()),
+        ];
+        entries.extend((2..=9).map(|binding| storage_entry(binding, compute, binding == 7 || binding == 8)));
+        let choose = Self {
+            layout: device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("rain rainfall choose"),
+                entries: &entries,
+            }),
+            module: compose::shader(device, "rainfall_choose"),
+            apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
+            pipelines: Default::default(),
+        };
+        if !choose.apart {
+            choose.prepare(device, ChoiceKey::EVERYTHING);
+        }
+        choose
+    }
+
+    fn serving(&self, key: ChoiceKey) -> ChoiceKey {
+        if self.apart { key } else { ChoiceKey::EVERYTHING }
+    }
+
+    fn prepare(&self, device: &wgpu::Device, key: ChoiceKey) {
+        let key = self.serving(key);
+        if let Some(slot) = self.pipelines.get(key.index()) {
+            slot.get_or_init(|| {
+                let constants = [("UNEVEN", f64::from(key.uneven)), ("THINNED", f64::from(key.thinned))];
+                let pipeline = |entry: &str| {
+                    let groups = [&self.layout];
+                    compute_pipeline_with(device, "rain rainfall choose", &self.module, entry, &groups, &constants)
+                };
+                Pipelines {
+                    count: pipeline("count"),
+                    sum: pipeline("sum"),
+                    scan: pipeline("scan"),
+                    list: pipeline("list"),
+                }
+            });
+        }
+    }
+}
+
+/// Buffers of a view that chooses; grown, never shrunk.
+#[derive(Debug)]
+pub(super) struct ChoiceGpu {
+    uniform: wgpu::Buffer,
+    counts: wgpu::Buffer,
+    sums: wgpu::Buffer,
+    staged: wgpu::Buffer,
+    areas: wgpu::Buffer,
+    ladder: wgpu::Buffer,
+    /// What the ladder's buffer holds.
+    ladder_of: Option<std::sync::Arc<RateLadder>>,
+    packed: AreaFieldF32,
+    key: ChoiceKey,
+    groups: u32,
+    bind_group: Option<wgpu::BindGroup>,
+}
+
+fn storage(device: &wgpu::Device, label: &str, bytes: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.max(16),
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+/// Makes a buffer larger that is too small.
+fn grow(device: &wgpu::Device, buffer: &mut wgpu::Buffer, label: &str, bytes: u64) {
+    if buffer.size() < bytes {
+        *buffer = storage(device, label, bytes.next_power_of_two());
+    }
+}
+
+/// What the bind group of a choice takes from its view.
+pub(super) struct ChoiceTargets<'a> {
+    pub view: &'a wgpu::Buffer,
+    pub arguments: &'a wgpu::Buffer,
+    pub records: &'a wgpu::Buffer,
+    pub near: &'a wgpu::Buffer,
+}
+
+impl ChoiceGpu {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self {
+            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("rain drop choice"),
+                size: size_of::<RainfallChoice>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            counts: storage(device, "rain drop counts", 4096),
+            sums: storage(device, "rain drop sums", 512),
+            staged: storage(device, "rain staged drops", 4096),
+            areas: storage(device, "rain areas of drops", 16),
+            ladder: storage(device, "rain ladder of rates", 16),
+            ladder_of: None,
+            packed: AreaFieldF32::default(),
+            key: ChoiceKey::default(),
+            groups: 0,
+            bind_group: None,
+        }
+    }
+
+    /// Uploads what is chosen from. `false`: there are more areas than fit, and the last are left out.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        choose: &Choose,
+        choice: &DropChoice,
+        near_reaches: &[f32; CLASS_COUNT],
+        targets: &ChoiceTargets,
+    ) -> bool {
+        self.key = ChoiceKey {
+            uneven: choice.uneven.is_some(),
+            thinned: choice.region.is_some() || choice.detail.is_some(),
+        };
+        choose.prepare(device, self.key);
+        let cells = choice.cells();
+        let (uniform, staged) = uniform(choice, &cells, near_reaches);
+        self.groups = uniform.groups;
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        grow(
+            device,
+            &mut self.counts,
+            "rain drop counts",
+            4 * u64::from(uniform.cells),
+        );
+        grow(device, &mut self.sums, "rain drop sums", 8 * u64::from(uniform.groups));
+        grow(device, &mut self.staged, "rain staged drops", 4 * u64::from(staged));
+        let mut whole = true;
+        if let Some(rain) = &choice.uneven {
+            whole = self.prepare_uneven(device, queue, choice, rain);
+        }
+        let entry = |binding, buffer: &wgpu::Buffer| (binding, buffer.clone());
+        let buffers = [
+            entry(0, targets.view),
+            entry(1, &self.uniform),
+            entry(2, &self.counts),
+            entry(3, &self.sums),
+            entry(4, targets.arguments),
+            entry(5, targets.records),
+            entry(6, targets.near),
+            entry(7, &self.areas),
+            entry(8, &self.ladder),
+            entry(9, &self.staged),
+        ];
+        let entries = buffers.each_ref().map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding: *binding,
+            resource: buffer.as_entire_binding(),
+        });
+        self.bind_group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain rainfall choose"),
+            layout: &choose.layout,
+            entries: &entries,
+        }));
+        whole
+    }
+
+    fn prepare_uneven(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        choice: &DropChoice,
+        rain: &UnevenRain,
+    ) -> bool {
+        let eye = eye_of(choice);
+        let reach = choice.reach_m();
+        let whole = rain.areas.pack(glam::DVec2::new(eye.x, eye.z), reach, &mut self.packed);
+        grow(
+            device,
+            &mut self.areas,
+            "rain areas of drops",
+            16 * (MAX_PACKED_ROWS as u64 + 1),
+        );
+        let head = [[
+            self.packed.areas as f32,
+            self.packed.outside,
+            rain.weather_mm_h as f32,
+            0.0,
+        ]];
+        queue.write_buffer(&self.areas, 0, bytemuck::cast_slice(&head));
+        queue.write_buffer(&self.areas, 16, bytemuck::cast_slice(&self.packed.rows));
+        let known = self.ladder_of.as_ref();
+        if known.is_none_or(|known| !std::sync::Arc::ptr_eq(known, &rain.ladder)) {
+            let lines: Vec<[f32; 2]> = rain.ladder.ln_lines().collect();
+            grow(device, &mut self.ladder, "rain ladder of rates", 8 * lines.len() as u64);
+            queue.write_buffer(&self.ladder, 0, bytemuck::cast_slice(&lines));
+            self.ladder_of = Some(rain.ladder.clone());
+        }
+        whole
+    }
+
+    /// Chooses.
+    pub fn encode(&self, pass: &mut wgpu::ComputePass, choose: &Choose) {
+        let slot = choose.pipelines.get(choose.serving(self.key).index());
+        let (Some(pipelines), Some(bind_group)) = (slot.and_then(OnceLock::get), &self.bind_group) else {
+            return;
+        };
+        let rows = |groups: u32| (groups.min(ROW), groups.div_ceil(ROW));
+        pass.set_bind_group(0, bind_group, &[]);
+        for (pipeline, (x, y)) in [
+            (&pipelines.count, rows(self.groups)),
+            (&pipelines.sum, rows(self.groups.div_ceil(GROUP))),
+            (&pipelines.scan, (1, 1)),
+            (&pipelines.list, rows(self.groups)),
+        ] {
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(x, y, 1);
+        }
+    }
+
+    /// GPU memory. Units: bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        let buffers = [
+            &self.uniform,
+            &self.counts,
+            &self.sums,
+            &self.staged,
+            &self.areas,
+            &self.ladder,
+        ];
+        buffers.into_iter().map(wgpu::Buffer::size).sum()
+    }
+}
+
+fn eye_of(choice: &DropChoice) -> glam::DVec3 {
+    if choice.view.eye_m.is_finite() {
+        choice.view.eye_m
+    } else {
+        glam::DVec3::ZERO
+    }
+}
+
+/// Half its width, half its height, how far ahead, and what it is.
+fn region_terms(settings: &FollowSettings) -> [f32; 4] {
+    match settings.shape {
+        FollowShape::SemiCylinder {
+            across_m,
+            ahead_m,
+            height_m,
+        } => [across_m, 0.5 * height_m, ahead_m, 1.0],
+        FollowShape::Block {
+            width_m,
+            height_m,
+            depth_m,
+        } => [0.5 * width_m, 0.5 * height_m, depth_m, 2.0],
+    }
+    .map(|v| v as f32)
+}
+
+/// How many drops of a cell are staged where no rank is above `limit`: their number is Poisson's, and one cell in a thousand
+/// that has more is looked through again.
+fn room(limit: f32) -> u32 {
+    (limit + 3.0 * limit.max(0.0).sqrt()).ceil() as u32 + 2
+}
+
+/// The uniform, and how many drops are staged.
+fn uniform(choice: &DropChoice, cells: &ViewCells, near_reaches: &[f32; CLASS_COUNT]) -> (RainfallChoice, u32) {
+    let mut out = RainfallChoice {
+        planes: choice.view.side_planes.map(|plane| Vec4::to_array(&plane)),
+        most: choice.most_drops,
+        draws: choice.most_drops.div_ceil(QUADS_OF_A_DRAW),
+        detail: match choice.detail {
+            None => 0,
+            Some(DetailLaw::OpticalDepth) => 1,
+            Some(DetailLaw::Quadratic { .. }) => 2,
+            Some(DetailLaw::Gaussian { .. }) => 3,
+        },
+        kappa: choice.kappa as f32,
+        focal: choice.view.focal_px as f32,
+        exposure: choice.view.exposure_s as f32,
+        ..RainfallChoice::default()
+    };
+    if let Some((follow, settings)) = &choice.region {
+        let Follow { centre_m, heading_rad } = *follow;
+        let place: Vec3 = (centre_m - eye_of(choice)).as_vec3();
+        out.region = region_terms(settings);
+        out.region_place = place.extend(settings.slack_m as f32).to_array();
+        let (sin, cos) = heading_rad.sin_cos();
+        out.region_turn = [sin as f32, cos as f32, settings.rim_m as f32, 0.0];
+    }
+    let highest = choice.uneven.as_ref().map(|rain| {
+        out.ladder = [
+            RateLadder::FIRST_MM_H.ln() as f32,
+            RateLadder::KNOTS_PER_E_FOLD as f32,
+            rain.ladder.knots_of_class() as f32,
+            0.0,
+        ];
+        let eye = eye_of(choice);
+        let place = glam::DVec2::new(eye.x, eye.z);
+        let rates = rain.areas.rates_within(place, choice.reach_m(), rain.weather_mm_h);
+        (&rain.ladder, rates[1])
+    });
+    let mut staged = 0_u32;
+    for (k, (slot, of)) in out.classes.iter_mut().zip(&cells.classes).enumerate() {
+        let threshold = Threshold::new(&SizeClass::new(k), &choice.spectrum);
+        let [scale, slope] = threshold.terms();
+        let ranks = match &highest {
+            None => [threshold.scan_limit(), threshold.whole_limit(), scale, slope],
+            Some((ladder, rate)) if *rate > 0.0 => [ladder.scan_limit(k, *rate), -1.0, 0.0, 0.0],
+            Some(_) => [0.0, -1.0, 0.0, 0.0],
+        };
+        let cells = of.side.element_product();
+        let room = room(ranks[0]);
+        *slot = ChoiceClass {
+            low: of.low.extend(0).to_array(),
+            side: of.side.extend(0).to_array(),
+            cells: [out.cells, cells, room, staged],
+            ranks,
+            reach: [of.reach_m, of.least_reach_m, of.streak_m, near_reaches[k]],
+        };
+        out.cells += cells;
+        staged = staged.saturating_add(cells.saturating_mul(room));
+    }
+    out.groups = out.cells.div_ceil(GROUP);
+    let lead = cells.lead_m;
+    if lead != Vec3::ZERO {
+        out.along = (lead / lead.length_squared()).extend(1.0).to_array();
+    }
+    (out, staged)
+}
