@@ -105,11 +105,11 @@ struct RainfallView {
 struct ChoiceClass {
     // Lowest cell, from the eye's; w unused.
     low: vec4<i32>,
-    // Cells along each axis; w unused.
+    // Cells along each axis; w: neighbours along the first that are looked through together, a run, at most 16.
     side: vec4<u32>,
-    // How many cells of all classes come before, and how many this class has; drops of a cell that there is room for on the
+    // How many runs of all classes come before, and how many this class has; drops of a run that there is room for on the
     // stage, and where its part begins.
-    cells: vec4<u32>,
+    runs: vec4<u32>,
     // No drop has a rank above x, all up to y are there wholly; z: threshold at a diameter of 0, w: slope of its ln, 1/mm.
     ranks: vec4<f32>,
     // Reach of the largest drops and of the smallest, of a streak, and of what may have a pattern, m.
@@ -130,8 +130,8 @@ struct RainfallChoice {
     region_turn: vec4<f32>,
     // Ladder of rates: ln of the first, knots a factor of e, knots; w unused.
     ladder: vec4<f32>,
-    // Cells of all classes, and groups of them.
-    cells: u32,
+    // Runs of cells of all classes, and groups of them.
+    runs: u32,
     groups: u32,
     // No more drops are drawn.
     most: u32,

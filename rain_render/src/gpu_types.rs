@@ -88,7 +88,7 @@ pub struct RainfallView {
 pub struct ChoiceClass {
     pub low: [i32; 4],
     pub side: [u32; 4],
-    pub cells: [u32; 4],
+    pub runs: [u32; 4],
     pub ranks: [f32; 4],
     pub reach: [f32; 4],
 }
@@ -103,7 +103,7 @@ pub struct RainfallChoice {
     pub along: [f32; 4],
     pub region_turn: [f32; 4],
     pub ladder: [f32; 4],
-    pub cells: u32,
+    pub runs: u32,
     pub groups: u32,
     pub most: u32,
     pub draws: u32,
@@ -612,8 +612,8 @@ pub fn layouts() -> Vec<Layout> {
         layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead, size,
             viewport, focal, near, exposure, contrast, kappa, soft, lamps, panes, patterned, pad_a, pad_b, pad_c,
             cover, classes, lamp, pane),
-        layout!(ChoiceClass: low, side, cells, ranks, reach),
-        layout!(RainfallChoice: planes, region, region_place, along, region_turn, ladder, cells, groups, most, draws, detail, kappa,
+        layout!(ChoiceClass: low, side, runs, ranks, reach),
+        layout!(RainfallChoice: planes, region, region_place, along, region_turn, ladder, runs, groups, most, draws, detail, kappa,
             focal, exposure, classes),
         layout!(GlassPane: along, up, across),
         layout!(SplashFoot: place, key),

@@ -1,15 +1,15 @@
-// Which drops a view draws singly: the cells of all lattices about it are counted, then their drops listed in the order of the
+// Which drops a view draws singly: those in the cells of all lattices about it are counted, then listed in the order of the
 // cells, so that the list is the same each time.
 
 @group(0) @binding(0) var<uniform> view: RainfallView;
 @group(0) @binding(1) var<uniform> choice: RainfallChoice;
-// Drops of each cell in the lower half of a word, how many of them may have a pattern in the upper.
+// Drops of each run of cells in the lower half of a word, how many of them may have a pattern in the upper.
 @group(0) @binding(2) var<storage, read_write> counts: array<u32>;
-// Those of each group of cells, then those of all groups before.
+// Those of each group of runs, then those of all groups before.
 @group(0) @binding(3) var<storage, read_write> sums: array<vec2<u32>>;
 // See `RainfallArguments` in rain_render.
 @group(0) @binding(4) var<storage, read_write> arguments: array<u32>;
-// The drops that a cell has, `DropRecord::drop`, as many as there is room for: of all cells of a class the first, then the second.
+// The drops that runs have, as many as there is room for: of all runs of a class the first, then the second.
 @group(0) @binding(9) var<storage, read_write> staged: array<u32>;
 @group(0) @binding(5) var<storage, read_write> records: array<DropRecord>;
 @group(0) @binding(6) var<storage, read_write> listed: array<u32>;
@@ -22,7 +22,7 @@
 override UNEVEN: bool = true;
 override THINNED: bool = true;
 
-// Cells of a group.
+// Runs of a group.
 const GROUP: u32 = 64u;
 // Share over which a drop fades that a law is about to leave out, of the law's number.
 const FADE: f32 = 0.1;
@@ -147,125 +147,128 @@ fn from_lead_squared(place: vec3<f32>) -> f32 {
     return dot(off, off);
 }
 
-// A cell.
-struct Cell {
+// Neighbouring cells of a row that are looked through together.
+struct Run {
     k: u32,
     // Its number in its class.
     of_class: u32,
+    // Its first cell, and how many there are.
     place: vec3<i32>,
+    cells: u32,
 }
 
-fn cell_at(index: u32) -> Cell {
+fn run_at(index: u32) -> Run {
     var k = 0u;
     for (var i = 1u; i < 12u; i += 1u) {
-        k = select(k, i, index >= choice.classes[i].cells.x);
+        k = select(k, i, index >= choice.classes[i].runs.x);
     }
-    let of_class = index - choice.classes[k].cells.x;
-    let side = choice.classes[k].side.xyz;
-    let row = of_class / side.x;
-    let layer = row / side.y;
-    let place = vec3<u32>(of_class - row * side.x, row - layer * side.y, layer);
-    return Cell(k, of_class, choice.classes[k].low.xyz + vec3<i32>(place));
+    let side = choice.classes[k].side;
+    let of_class = index - choice.classes[k].runs.x;
+    let of_row = (side.x + side.w - 1u) / side.w;
+    let row = of_class / of_row;
+    let first = (of_class - row * of_row) * side.w;
+    let place = vec3<u32>(first, row % side.y, row / side.y);
+    return Run(k, of_class, choice.classes[k].low.xyz + vec3<i32>(place), min(side.w, side.x - first));
 }
 
-fn record_of(cell: Cell, drop: u32) -> DropRecord {
-    let biased = vec3<u32>(cell.place + 512);
-    return DropRecord(biased.x | (biased.y << 10u) | (biased.z << 20u), drop);
-}
-
-// Lists a drop, if it is not beyond the limit.
-fn enlist(cell: Cell, drop: u32, patterned: bool, at: vec2<u32>) {
+// Lists a drop, if it is not beyond the limit. `word`: its cell in the run, then as in `DropRecord::drop`.
+fn enlist(run: Run, word: u32, patterned: bool, at: vec2<u32>) {
     let drawn = at.x < choice.most;
     if (drawn) {
-        records[at.x] = record_of(cell, drop);
+        let biased = vec3<u32>(run.place + 512) + vec3<u32>(word & 15u, 0u, 0u);
+        records[at.x] = DropRecord(biased.x | (biased.y << 10u) | (biased.z << 20u), (word & ~15u) | run.k);
     }
     if (patterned && at.y < choice.most) {
         listed[at.y] = select(RAIN_NO_DROP, at.x, drawn);
     }
 }
 
-// Finds the drops of a cell that the view draws, and how many of them may have a pattern: all or none. They are staged, or
+// Finds the drops of a run that the view draws, and how many of them may have a pattern: all or none. They are staged, or
 // with `enlisting` listed from `start` on.
-fn find(cell: Cell, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
-    let own = choice.classes[cell.k];
-    let placed = view.classes[cell.k];
+fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
+    let own = choice.classes[run.k];
+    let placed = view.classes[run.k];
     let edge = placed.fraction.w;
     let half = 0.5 * edge;
-    let corner = (vec3<f32>(cell.place) - placed.fraction.xyz) * edge;
-    let centre = corner + half;
+    let first = (vec3<f32>(run.place) - placed.fraction.xyz) * edge;
+    let last = first + edge * vec3<f32>(f32(run.cells), 1.0, 1.0);
+    let patterned = length(clamp(vec3<f32>(0.0), first, last)) < own.reach.w;
     let margin = own.reach.z;
-    let from_eye = length(clamp(vec3<f32>(0.0), corner, centre + half));
-    let nearest = select(from_eye, sqrt(from_lead_squared(centre)) - half * sqrt(3.0), choice.along.w > 0.0);
-    if (nearest > own.reach.x || !touches(centre, half, margin)) {
-        return vec2<u32>(0u);
-    }
-    let patterned = from_eye < own.reach.w;
-    let key = rain_cell_key(placed.stream.xyz, placed.cell.xyz + cell.place);
     let furthest = own.reach.x * own.reach.x;
     let whole = own.reach.y * own.reach.y;
-    var rank = 0.0;
     var found = 0u;
-    for (var i = 0u; i < 4096u; i += 1u) {
-        let marks = rain_drop_marks(key, i);
-        rank -= log(rain_open_unit(marks.x));
-        if (rank >= own.ranks.x) {
-            break;
-        }
-        let place = corner + rain_drop_place(key, i) * edge;
-        let square = from_lead_squared(place);
-        if (square > furthest || depth_inside(place) < -(margin + 0.01)) {
+    for (var c = 0u; c < run.cells; c += 1u) {
+        let corner = first + vec3<f32>(edge * f32(c), 0.0, 0.0);
+        let centre = corner + half;
+        let from_eye = length(clamp(vec3<f32>(0.0), corner, corner + edge));
+        let nearest = select(from_eye, sqrt(from_lead_squared(centre)) - half * sqrt(3.0), choice.along.w > 0.0);
+        if (nearest > own.reach.x || !touches(centre, half, margin)) {
             continue;
         }
-        var presence = 1.0;
-        if (square > whole || rank > own.ranks.y) {
-            let diameter_mm = rain_diameter_mm(placed.diameter.x, placed.diameter.y, rain_unit(marks.y));
-            let range = rain_visible_range(diameter_mm, choice.focal, choice.exposure);
-            let reach = RAIN_FADE_END * min(choice.kappa * range, RAIN_RANGE_CAP_M);
-            presence = select(0.0, presence_of(cell.k, rank, diameter_mm, place), square <= reach * reach);
+        let key = rain_cell_key(placed.stream.xyz, placed.cell.xyz + run.place + vec3<i32>(i32(c), 0, 0));
+        var rank = 0.0;
+        for (var i = 0u; i < 4096u; i += 1u) {
+            let marks = rain_drop_marks(key, i);
+            rank -= log(rain_open_unit(marks.x));
+            if (rank >= own.ranks.x) {
+                break;
+            }
+            let place = corner + rain_drop_place(key, i) * edge;
+            let square = from_lead_squared(place);
+            if (square > furthest || depth_inside(place) < -(margin + 0.01)) {
+                continue;
+            }
+            var presence = 1.0;
+            if (square > whole || rank > own.ranks.y) {
+                let diameter_mm = rain_diameter_mm(placed.diameter.x, placed.diameter.y, rain_unit(marks.y));
+                let range = rain_visible_range(diameter_mm, choice.focal, choice.exposure);
+                let reach = RAIN_FADE_END * min(choice.kappa * range, RAIN_RANGE_CAP_M);
+                presence = select(0.0, presence_of(run.k, rank, diameter_mm, place), square <= reach * reach);
+            }
+            if (THINNED) {
+                presence *= region_weight(place) * detail_weight(length(place), rain_unit(marks.z));
+            }
+            if (presence <= 0.0) {
+                continue;
+            }
+            let word = c | (i << 4u) | (u32(presence * 65535.0 + 0.5) << 16u);
+            if (enlisting) {
+                enlist(run, word, patterned, start + found);
+            } else if (found < own.runs.z) {
+                staged[own.runs.w + found * own.runs.y + run.of_class] = word;
+            }
+            found += 1u;
         }
-        if (THINNED) {
-            presence *= region_weight(place) * detail_weight(length(place), rain_unit(marks.z));
-        }
-        if (presence <= 0.0) {
-            continue;
-        }
-        let drop = cell.k | (i << 4u) | (u32(presence * 65535.0 + 0.5) << 16u);
-        if (enlisting) {
-            enlist(cell, drop, patterned, start + found);
-        } else if (found < own.cells.z) {
-            staged[own.cells.w + found * own.cells.y + cell.of_class] = drop;
-        }
-        found += 1u;
     }
     return vec2<u32>(found, select(0u, found, patterned));
 }
 
-fn cell_of(group: vec3<u32>, local: u32) -> u32 {
+fn numbered(group: vec3<u32>, local: u32) -> u32 {
     return (group.y * ROW + group.x) * GROUP + local;
 }
 
-fn count_of(cell: u32) -> vec2<u32> {
-    return vec2<u32>(counts[cell] & 0xFFFFu, counts[cell] >> 16u);
+fn count_of(index: u32) -> vec2<u32> {
+    return vec2<u32>(counts[index] & 0xFFFFu, counts[index] >> 16u);
 }
 
 @compute @workgroup_size(64)
 fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let cell = cell_of(group, local);
-    if (cell < choice.cells) {
-        let found = find(cell_at(cell), false, vec2<u32>(0u));
-        counts[cell] = found.x | (found.y << 16u);
+    let index = numbered(group, local);
+    if (index < choice.runs) {
+        let found = find(run_at(index), false, vec2<u32>(0u));
+        counts[index] = found.x | (found.y << 16u);
     }
 }
 
 @compute @workgroup_size(64)
 fn sum(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let g = cell_of(group, local);
+    let g = numbered(group, local);
     if (g >= choice.groups) {
         return;
     }
     var all = vec2<u32>(0u);
-    for (var cell = g * GROUP; cell < min((g + 1u) * GROUP, choice.cells); cell += 1u) {
-        all += count_of(cell);
+    for (var index = g * GROUP; index < min((g + 1u) * GROUP, choice.runs); index += 1u) {
+        all += count_of(index);
     }
     sums[g] = all;
 }
@@ -321,8 +324,8 @@ fn scan(@builtin(local_invocation_index) local: u32) {
 
 @compute @workgroup_size(64)
 fn list(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let index = cell_of(group, local);
-    if (index >= choice.cells || counts[index] == 0u) {
+    let index = numbered(group, local);
+    if (index >= choice.runs || counts[index] == 0u) {
         return;
     }
     var start = sums[index / GROUP];
@@ -330,14 +333,14 @@ fn list(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         start += count_of(before);
     }
     let found = count_of(index);
-    let cell = cell_at(index);
-    let stage = choice.classes[cell.k].cells;
+    let run = run_at(index);
+    let stage = choice.classes[run.k].runs;
     if (found.x > stage.z) {
         // More than are staged.
-        _ = find(cell, true, start);
+        _ = find(run, true, start);
         return;
     }
     for (var i = 0u; i < found.x; i += 1u) {
-        enlist(cell, staged[stage.w + i * stage.y + cell.of_class], found.y > 0u, start + i);
+        enlist(run, staged[stage.w + i * stage.y + run.of_class], found.y > 0u, start + i);
     }
 }

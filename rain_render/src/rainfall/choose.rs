@@ -1,6 +1,6 @@
 //! Choosing the drops of a view on the GPU: nothing that grows with their number goes up or comes back.
 //!
-//! Cells are counted, counts summed up, and drops listed in the order of their cells, so that the list is the same each time.
+//! Runs of neighbouring cells are counted, counts summed up, and drops listed in the order of their cells, so that the list is the same each time.
 //! A software device runs masked-off code too: there uneven rain and what thins it are in the pipelines of views that have
 //! them only. A GPU has one set, so that the first shower makes no frame wait.
 
@@ -18,7 +18,7 @@ use crate::compose;
 use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
 use crate::quad_indices::QUADS_OF_A_DRAW;
 
-/// Cells of a group, as the shader has it.
+/// Runs of a group, as the shader has it.
 const GROUP: u32 = 64;
 
 /// Groups are dispatched in rows of this many, as the shader has it.
@@ -113,7 +113,6 @@ pub(super) struct ChoiceGpu {
     uniform: wgpu::Buffer,
     counts: wgpu::Buffer,
     sums: wgpu::Buffer,
-    staged: wgpu::Buffer,
     areas: wgpu::Buffer,
     ladder: wgpu::Buffer,
     /// What the ladder's buffer holds.
@@ -136,7 +135,8 @@ fn storage(device: &wgpu::Device, label: &str, bytes: u64) -> wgpu::Buffer {
 /// Makes a buffer larger that is too small.
 fn grow(device: &wgpu::Device, buffer: &mut wgpu::Buffer, label: &str, bytes: u64) {
     if buffer.size() < bytes {
-        *buffer = storage(device, label, bytes.next_power_of_two());
+        // A quarter more, so that a view that opens slowly does not ask for another in each frame.
+        *buffer = storage(device, label, (bytes + bytes / 4).next_multiple_of(256));
     }
 }
 
@@ -146,6 +146,8 @@ pub(super) struct ChoiceTargets<'a> {
     pub arguments: &'a wgpu::Buffer,
     pub records: &'a wgpu::Buffer,
     pub near: &'a wgpu::Buffer,
+    /// Streaks are made after the choice: until then drops are staged there.
+    pub stage: &'a wgpu::Buffer,
 }
 
 impl ChoiceGpu {
@@ -159,7 +161,6 @@ impl ChoiceGpu {
             }),
             counts: storage(device, "rain drop counts", 4096),
             sums: storage(device, "rain drop sums", 512),
-            staged: storage(device, "rain staged drops", 4096),
             areas: storage(device, "rain areas of drops", 16),
             ladder: storage(device, "rain ladder of rates", 16),
             ladder_of: None,
@@ -186,17 +187,17 @@ impl ChoiceGpu {
         };
         choose.prepare(device, self.key);
         let cells = choice.cells();
-        let (uniform, staged) = uniform(choice, &cells, near_reaches);
+        let stage = u32::try_from(targets.stage.size() / 4).unwrap_or(u32::MAX);
+        let uniform = uniform(choice, &cells, near_reaches, stage);
         self.groups = uniform.groups;
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         grow(
             device,
             &mut self.counts,
             "rain drop counts",
-            4 * u64::from(uniform.cells),
+            4 * u64::from(uniform.runs),
         );
         grow(device, &mut self.sums, "rain drop sums", 8 * u64::from(uniform.groups));
-        grow(device, &mut self.staged, "rain staged drops", 4 * u64::from(staged));
         let mut whole = true;
         if let Some(rain) = &choice.uneven {
             whole = self.prepare_uneven(device, queue, choice, rain);
@@ -212,7 +213,7 @@ impl ChoiceGpu {
             entry(6, targets.near),
             entry(7, &self.areas),
             entry(8, &self.ladder),
-            entry(9, &self.staged),
+            entry(9, targets.stage),
         ];
         let entries = buffers.each_ref().map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding: *binding,
@@ -281,14 +282,7 @@ impl ChoiceGpu {
 
     /// GPU memory. Units: bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let buffers = [
-            &self.uniform,
-            &self.counts,
-            &self.sums,
-            &self.staged,
-            &self.areas,
-            &self.ladder,
-        ];
+        let buffers = [&self.uniform, &self.counts, &self.sums, &self.areas, &self.ladder];
         buffers.into_iter().map(wgpu::Buffer::size).sum()
     }
 }
@@ -318,14 +312,33 @@ fn region_terms(settings: &FollowSettings) -> [f32; 4] {
     .map(|v| v as f32)
 }
 
-/// How many drops of a cell are staged where no rank is above `limit`: their number is Poisson's, and one cell in a thousand
-/// that has more is looked through again.
-fn room(limit: f32) -> u32 {
-    (limit + 3.0 * limit.max(0.0).sqrt()).ceil() as u32 + 2
+/// Drops that a run has at least, if it may have as many cells. Units: none.
+const DROPS_OF_RUN: f32 = 4.0;
+
+/// Most cells of a run: four bits name one.
+const MOST_CELLS: u32 = 16;
+
+/// How many of `side` cells of a row are looked through together where no rank is above `limit`: so many that there are some drops
+/// in them, for most cells of thin rain have none.
+fn cells_of_run(limit: f32, side: u32) -> u32 {
+    let cells = (DROPS_OF_RUN / limit.max(0.01)).ceil() as u32;
+    cells.clamp(1, MOST_CELLS).min(side.max(1))
 }
 
-/// The uniform, and how many drops are staged.
-fn uniform(choice: &DropChoice, cells: &ViewCells, near_reaches: &[f32; CLASS_COUNT]) -> (RainfallChoice, u32) {
+/// How many drops of each of `runs` runs are staged that have `limit` candidates in the mean: their number is Poisson's, and one in a
+/// thousand that has more is looked through again. None where there is no room for as many on what is `left` of the stage:
+/// then all runs are looked through again.
+fn room(limit: f32, runs: u32, left: u32) -> u32 {
+    let room = (limit + 3.0 * limit.max(0.0).sqrt()).ceil() as u32 + 2;
+    if u64::from(runs) * u64::from(room) <= u64::from(left) {
+        room
+    } else {
+        0
+    }
+}
+
+/// The uniform for a stage of so many drops.
+fn uniform(choice: &DropChoice, cells: &ViewCells, near_reaches: &[f32; CLASS_COUNT], stage: u32) -> RainfallChoice {
     let mut out = RainfallChoice {
         planes: choice.view.side_planes.map(|plane| Vec4::to_array(&plane)),
         most: choice.most_drops,
@@ -370,22 +383,23 @@ fn uniform(choice: &DropChoice, cells: &ViewCells, near_reaches: &[f32; CLASS_CO
             Some((ladder, rate)) if *rate > 0.0 => [ladder.scan_limit(k, *rate), -1.0, 0.0, 0.0],
             Some(_) => [0.0, -1.0, 0.0, 0.0],
         };
-        let cells = of.side.element_product();
-        let room = room(ranks[0]);
+        let together = cells_of_run(ranks[0], of.side.x);
+        let runs = of.side.x.div_ceil(together) * of.side.y * of.side.z;
+        let room = room(ranks[0] * together as f32, runs, stage - staged);
         *slot = ChoiceClass {
             low: of.low.extend(0).to_array(),
-            side: of.side.extend(0).to_array(),
-            cells: [out.cells, cells, room, staged],
+            side: of.side.extend(together).to_array(),
+            runs: [out.runs, runs, room, staged],
             ranks,
             reach: [of.reach_m, of.least_reach_m, of.streak_m, near_reaches[k]],
         };
-        out.cells += cells;
-        staged = staged.saturating_add(cells.saturating_mul(room));
+        out.runs += runs;
+        staged += runs * room;
     }
-    out.groups = out.cells.div_ceil(GROUP);
+    out.groups = out.runs.div_ceil(GROUP);
     let lead = cells.lead_m;
     if lead != Vec3::ZERO {
         out.along = (lead / lead.length_squared()).extend(1.0).to_array();
     }
-    (out, staged)
+    out
 }

@@ -274,6 +274,7 @@ impl RainfallViewGpu {
                     arguments: &self.arguments,
                     records: &self.records,
                     near: &self.near_list,
+                    stage: &self.streaks,
                 };
                 let reaches = near_reaches(input, &placements);
                 let chooser = self.choice.get_or_insert_with(|| ChoiceGpu::new(device));
