@@ -1,13 +1,13 @@
 //! `rain bench peers`: frames with our rain beside frames with other packages' rain, by programs of their own.
 //!
-//! The programs lie in a workspace of their own (`benches/peers`), so that what is compared with is no dependency. Rounds
-//! are interleaved; costs are differences and ratios within a round, their medians over rounds.
+//! The programs lie in a workspace of their own (`benches/peers`), so that what is compared with is no dependency. All contenders
+//! of a count are kept running and draw a few frames each in turn, so that what else the machine does falls on all of them
+//! alike; a cost is a turn less the empty scene's before and after.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use clap::Args;
 use serde_json::Value;
@@ -15,11 +15,14 @@ use serde_json::Value;
 /// What draws rain into the scene, as `peer_frames` names it; the first is what the others are divided by.
 const KINDS: [&str; 5] = ["rain_near_only", "rain", "hanabi", "weather", "weather_own"];
 
+/// Frames of a turn that count.
+const FRAMES: u32 = 4;
+
 /// Arguments of `rain bench peers`.
 #[derive(Debug, Args)]
 pub struct PeersArgs {
-    /// Interleaved rounds.
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    /// Turns of each contender at each count.
+    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
     /// Visible drops, such as 10000,50000.
     #[arg(long, value_delimiter = ',', default_values_t = [10_000, 50_000, 200_000],
@@ -34,37 +37,40 @@ pub struct PeersArgs {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Cost {
     wall_ms: f64,
-    /// NaN where the system does not tell.
+    /// That on the wall where the system does not tell.
     cpu_ms: f64,
 }
 
 impl Cost {
     fn read(json: &Value) -> Option<Self> {
+        let wall_ms = json["wall_ms"].as_f64()?;
         Some(Self {
-            wall_ms: json["wall_ms"].as_f64()?,
-            cpu_ms: json["cpu_ms"].as_f64().unwrap_or(f64::NAN),
+            wall_ms,
+            cpu_ms: json["cpu_ms"].as_f64().unwrap_or(wall_ms),
         })
     }
 
-    fn over(self, other: Self) -> Self {
+    /// What this is over the mean of two others.
+    fn over(self, before: Self, after: Self) -> Self {
         Self {
-            wall_ms: self.wall_ms - other.wall_ms,
-            cpu_ms: self.cpu_ms - other.cpu_ms,
+            wall_ms: self.wall_ms - 0.5 * (before.wall_ms + after.wall_ms),
+            cpu_ms: self.cpu_ms - 0.5 * (before.cpu_ms + after.cpu_ms),
         }
     }
 }
 
-/// What one contender at one count cost in every round.
-#[derive(Debug, Default)]
+/// What one contender at one count cost.
+#[derive(Debug)]
 struct Row {
-    costs: Vec<Cost>,
-    /// Cost on all cores over that of what it is compared with, round by round.
-    ratios: Vec<f64>,
+    count: u32,
+    name: String,
     shown: Value,
+    wall_ms: f64,
+    /// The middle one of all turns, and where it lies with a chance of 95 %.
+    cpu_ms: [f64; 3],
+    /// Over that of what it is compared with.
+    ratio: f64,
 }
-
-/// Rows in the table's order.
-type Rows = BTreeMap<(u32, usize, String), Row>;
 
 /// Builds and runs the programs; prints the table and writes it as CSV.
 ///
@@ -72,21 +78,13 @@ type Rows = BTreeMap<(u32, usize, String), Row>;
 /// When a program does not build, start or end well.
 pub fn run(args: &PeersArgs, root: &Path, here: &Path) -> Result<(), String> {
     let programs = built(root)?;
-    let mut rows = Rows::new();
-    for round in 0..args.rounds {
+    let mut rows = Vec::new();
+    for count in &args.counts {
         let mut say = std::io::stderr();
-        let _ = writeln!(say, "round {} of {}", round + 1, args.rounds);
-        let dry = frame(&programs, "none", 0)?.0;
-        for count in &args.counts {
-            quads(&programs, *count, &mut rows)?;
-            let mut first = None;
-            for (place, kind) in KINDS.iter().enumerate() {
-                let (frame, shown) = frame(&programs, kind, *count)?;
-                let cost = frame.over(dry);
-                let base = *first.get_or_insert(cost);
-                push(&mut rows, (*count, place, (*kind).to_owned()), cost, base, shown);
-            }
-        }
+        let _ = writeln!(say, "{count} drops: passes");
+        rows.extend(quads(&programs, *count)?);
+        let _ = writeln!(say, "{count} drops: {} turns", args.rounds);
+        rows.extend(frames(&programs, *count, args.rounds)?);
     }
     let out = args
         .out
@@ -131,102 +129,172 @@ fn built(root: &Path) -> Result<PathBuf, String> {
     }
 }
 
-/// What a program prints.
-fn answer(programs: &Path, kind: &str, count: u32) -> Result<Value, String> {
-    let program = programs.join(format!("peer_frames{}", std::env::consts::EXE_SUFFIX));
-    let output = Command::new(&program)
-        .args([kind, &count.max(1).to_string()])
-        .stderr(Stdio::inherit())
-        .output()
-        .map_err(|error| format!("{} does not start: {error}", program.display()))?;
-    if !output.status.success() {
-        return Err(format!("peer_frames {kind} {count} ended with {}", output.status));
+/// A program that has its scene ready and waits for its turn.
+struct Contender {
+    kind: String,
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+}
+
+impl Contender {
+    /// Starts a program; returns it with what it says of its scene.
+    fn start(programs: &Path, kind: &str, count: u32) -> Result<(Self, Value), String> {
+        let program = programs.join(format!("peer_frames{}", std::env::consts::EXE_SUFFIX));
+        let mut child = Command::new(&program)
+            .args([kind, &count.to_string()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::inherit())
+            .spawn()
+            .map_err(|error| format!("{} does not start: {error}", program.display()))?;
+        let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
+            return Err(format!("{} has no pipes", program.display()));
+        };
+        let mut contender = Self {
+            kind: format!("{kind} {count}"),
+            child,
+            input,
+            output: BufReader::new(output),
+        };
+        let scene = contender.answer()?;
+        Ok((contender, scene))
     }
-    serde_json::from_slice(&output.stdout)
-        .map_err(|error| format!("peer_frames {kind} {count} printed no JSON: {error}"))
+
+    fn answer(&mut self) -> Result<Value, String> {
+        let mut line = String::new();
+        let read = self.output.read_line(&mut line);
+        if !matches!(read, Ok(bytes) if bytes > 0) {
+            return Err(format!("peer_frames {} ended without an answer", self.kind));
+        }
+        serde_json::from_str(&line).map_err(|error| format!("peer_frames {} printed no JSON: {error}", self.kind))
+    }
+
+    fn turn(&mut self) -> Result<Cost, String> {
+        writeln!(self.input, "{FRAMES}")
+            .map_err(|error| format!("peer_frames {} does not listen: {error}", self.kind))?;
+        let json = self.answer()?;
+        Cost::read(&json).ok_or_else(|| format!("peer_frames {} does not say how long it took", self.kind))
+    }
 }
 
-fn part(json: &Value, name: &str, of: &str) -> Result<Cost, String> {
-    Cost::read(&json[name]).ok_or_else(|| format!("peer_frames {of} does not say what {name} took"))
+impl Drop for Contender {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
 }
 
-/// A frame, and what is seen in it.
-fn frame(programs: &Path, kind: &str, count: u32) -> Result<(Cost, Value), String> {
-    let json = answer(programs, kind, count)?;
-    Ok((part(&json, "frame", kind)?, json["shown"].clone()))
+/// Frames of all contenders at one count, in turn.
+fn frames(programs: &Path, count: u32, rounds: u32) -> Result<Vec<Row>, String> {
+    let mut dry = Contender::start(programs, "none", count)?.0;
+    let mut contenders = Vec::new();
+    for kind in KINDS {
+        contenders.push(Contender::start(programs, kind, count)?);
+    }
+    let mut costs = vec![Vec::new(); KINDS.len()];
+    let mut before = dry.turn()?;
+    for _ in 0..rounds {
+        let mut turns = Vec::new();
+        for (contender, _) in &mut contenders {
+            turns.push(contender.turn()?);
+        }
+        let after = dry.turn()?;
+        for (list, turn) in costs.iter_mut().zip(turns) {
+            list.push(turn.over(before, after));
+        }
+        before = after;
+    }
+    let ours = middle(costs[0].iter().map(|cost| cost.cpu_ms))[0];
+    Ok(contenders
+        .iter()
+        .zip(KINDS)
+        .zip(&costs)
+        .map(|(((_, scene), kind), costs)| {
+            let cpu_ms = middle(costs.iter().map(|cost| cost.cpu_ms));
+            Row {
+                count,
+                name: kind.to_owned(),
+                shown: scene["shown"].clone(),
+                wall_ms: middle(costs.iter().map(|cost| cost.wall_ms))[0],
+                cpu_ms,
+                ratio: cpu_ms[0] / ours,
+            }
+        })
+        .collect())
 }
 
 /// Our draw pass beside the bare quads.
-fn quads(programs: &Path, count: u32, rows: &mut Rows) -> Result<(), String> {
-    let json = answer(programs, "quads", count)?;
-    let bare = part(&json, "bare", "quads")?;
-    for (place, name) in ["bare", "draw", "soft", "project", "listed", "list"]
-        .into_iter()
-        .enumerate()
-    {
-        let key = (count, KINDS.len() + place, format!("pass: {name}"));
-        push(rows, key, part(&json, name, "quads")?, bare, json["shown"].clone());
+fn quads(programs: &Path, count: u32) -> Result<Vec<Row>, String> {
+    let (_, json) = Contender::start(programs, "quads", count)?;
+    let part =
+        |name: &str| Cost::read(&json[name]).ok_or_else(|| format!("peer_frames quads does not say what {name} took"));
+    let bare = part("bare")?;
+    let mut rows = Vec::new();
+    for name in ["bare", "draw", "soft", "project", "listed", "list"] {
+        let cost = part(name)?;
+        rows.push(Row {
+            count,
+            name: format!("pass: {name}"),
+            shown: json["shown"].clone(),
+            wall_ms: cost.wall_ms,
+            cpu_ms: [cost.cpu_ms; 3],
+            ratio: cost.cpu_ms / bare.cpu_ms,
+        });
     }
-    Ok(())
+    Ok(rows)
 }
 
-fn push(rows: &mut Rows, key: (u32, usize, String), cost: Cost, base: Cost, shown: Value) {
-    let row = rows.entry(key).or_default();
-    row.costs.push(cost);
-    // Where a system does not tell what ran, the wall must do.
-    let ran = cost.cpu_ms / base.cpu_ms;
-    row.ratios.push(if ran.is_finite() {
-        ran
-    } else {
-        cost.wall_ms / base.wall_ms
-    });
-    row.shown = shown;
-}
-
-/// The middle one, the lowest, the highest.
-fn spread(values: impl Iterator<Item = f64>) -> [f64; 3] {
+/// The middle one, and the two between which it lies with a chance of 95 %: the sign test's.
+fn middle(values: impl Iterator<Item = f64>) -> [f64; 3] {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
-    let at = |i: usize| sorted.get(i).copied().unwrap_or(f64::NAN);
-    [at(sorted.len() / 2), at(0), at(sorted.len().saturating_sub(1))]
+    let n = sorted.len() as f64;
+    let at = |rank: f64| {
+        let index = rank.clamp(0.0, (n - 1.0).max(0.0)) as usize;
+        sorted.get(index).copied().unwrap_or(f64::NAN)
+    };
+    let half = 0.98 * n.sqrt();
+    [at(0.5 * n), at((0.5 * n - half).floor()), at((0.5 * n + half).ceil())]
 }
 
 /// The columns of a row behind count and contender.
 fn columns(row: &Row) -> [String; 8] {
     let shown = |name: &str| row.shown[name].as_f64().unwrap_or_default();
-    let [ratio, low, high] = spread(row.ratios.iter().copied());
+    let [cpu, low, high] = row.cpu_ms;
     [
         format!("{:.0}", shown("visible")),
         format!("{:.1}", shown("length_px")),
         format!("{:.2}", shown("width_px")),
-        format!("{:.1}", spread(row.costs.iter().map(|c| c.wall_ms))[0]),
-        format!("{:.1}", spread(row.costs.iter().map(|c| c.cpu_ms))[0]),
-        format!("{ratio:.2}"),
-        format!("{low:.2}"),
-        format!("{high:.2}"),
+        format!("{:.1}", row.wall_ms),
+        format!("{cpu:.1}"),
+        format!("{low:.1}"),
+        format!("{high:.1}"),
+        format!("{:.2}", row.ratio),
     ]
 }
 
-fn csv(rows: &Rows) -> String {
+fn csv(rows: &[Row]) -> String {
     let mut out =
-        String::from("count,contender,visible,length_px,width_px,wall_ms,cpu_ms,ratio,ratio_low,ratio_high\n");
-    for ((count, _, name), row) in rows {
-        let _ = writeln!(out, "{count},{name},{}", columns(row).join(","));
+        String::from("count,contender,visible,length_px,width_px,wall_ms,cpu_ms,cpu_low_ms,cpu_high_ms,ratio\n");
+    for row in rows {
+        let _ = writeln!(out, "{},{},{}", row.count, row.name, columns(row).join(","));
     }
     out
 }
 
-fn table(rows: &Rows) -> String {
+fn table(rows: &[Row]) -> String {
     let mut out = String::from(
-        "Cost over the same frame without rain (of passes: over an empty one); ratio of what ran on all cores, to\n\
-         rain_near_only and to the bare quads, with its range over the rounds.\n\n\
+        "Cost over the same frame without rain (of passes: over an empty one), the middle of all turns, and where it lies with a\n\
+         chance of 95 %; ratio of what ran on all cores, to rain_near_only and to the bare quads.\n\n\
          count    contender        visible  length, px  width, px  wall, ms   cpu, ms  ratio\n",
     );
-    for ((count, _, name), row) in rows {
-        let [visible, length, width, wall, cpu, ratio, low, high] = columns(row);
+    for row in rows {
+        let [visible, length, width, wall, cpu, low, high, ratio] = columns(row);
         let _ = writeln!(
             out,
-            "{count:<8} {name:<16} {visible:>7}  {length:>10}  {width:>9}  {wall:>8}  {cpu:>8}  {ratio} ({low} to {high})"
+            "{:<8} {:<16} {visible:>7}  {length:>10}  {width:>9}  {wall:>8}  {cpu:>8}  {ratio} ({low} to {high} ms)",
+            row.count, row.name
         );
     }
     out
@@ -236,38 +304,45 @@ fn table(rows: &Rows) -> String {
 mod tests {
     use super::*;
 
-    fn cost(wall_ms: f64, cpu_ms: f64) -> Cost {
-        Cost { wall_ms, cpu_ms }
+    #[test]
+    fn a_turn_is_compared_with_the_empty_ones_around_it() {
+        let cost = |wall_ms, cpu_ms| Cost { wall_ms, cpu_ms };
+        assert_eq!(cost(9.0, 30.0).over(cost(4.0, 10.0), cost(6.0, 14.0)), cost(4.0, 18.0));
     }
 
     #[test]
-    fn ratios_are_taken_within_rounds() {
-        let mut rows = Rows::new();
-        let key = || (10, 2, "hanabi".to_owned());
-        for (own, base) in [(30.0, 10.0), (40.0, 20.0), (90.0, 90.0)] {
-            push(&mut rows, key(), cost(1.0, own), cost(1.0, base), Value::Null);
-        }
-        let text = csv(&rows);
-        assert!(
-            text.ends_with("10,hanabi,0,0.0,0.00,1.0,40.0,2.00,1.00,3.00\n"),
-            "{text}"
-        );
-        assert!(table(&rows).contains("2.00 (1.00 to 3.00)"));
+    fn the_middle_lies_between_its_bounds() {
+        assert_eq!(middle([3.0, 1.0, 2.0].into_iter()), [2.0, 1.0, 3.0]);
+        let many = middle((0..100).map(f64::from));
+        assert_eq!(many, [50.0, 40.0, 60.0]);
+        assert!(middle(std::iter::empty()).iter().all(|v| v.is_nan()));
+    }
+
+    #[test]
+    fn rows_say_what_they_are_compared_with() {
+        let row = Row {
+            count: 10,
+            name: "hanabi".to_owned(),
+            shown: serde_json::json!({"visible": 12}),
+            wall_ms: 1.0,
+            cpu_ms: [40.0, 35.0, 44.0],
+            ratio: 2.0,
+        };
+        let rows = [row];
+        assert!(csv(&rows).ends_with("10,hanabi,12,0.0,0.00,1.0,40.0,35.0,44.0,2.00\n"));
+        assert!(table(&rows).contains("2.00 (35.0 to 44.0 ms)"));
     }
 
     #[test]
     fn the_wall_counts_where_nothing_else_is_known() {
-        let mut rows = Rows::new();
-        let key = (10, 2, "hanabi".to_owned());
-        push(&mut rows, key, cost(3.0, f64::NAN), cost(2.0, f64::NAN), Value::Null);
-        assert!(csv(&rows).ends_with(",NaN,1.50,1.50,1.50\n"), "{}", csv(&rows));
-    }
-
-    #[test]
-    fn what_says_no_time_is_refused() {
-        let json = serde_json::json!({"frame": {"wall_ms": 2.5, "cpu_ms": null}});
-        let read = part(&json, "frame", "none").expect("a time");
-        assert!(read.wall_ms == 2.5 && read.cpu_ms.is_nan());
-        assert!(part(&json, "bare", "quads").is_err_and(|e| e.contains("bare")));
+        let read = |json: Value| Cost::read(&json);
+        assert_eq!(
+            read(serde_json::json!({"wall_ms": 2.5, "cpu_ms": null})),
+            Some(Cost {
+                wall_ms: 2.5,
+                cpu_ms: 2.5
+            })
+        );
+        assert_eq!(read(serde_json::json!({"cpu_ms": 1.0})), None);
     }
 }

@@ -124,7 +124,9 @@ struct RainfallChoice {
     region: vec4<f32>,
     // Its middle from the eye, m; w: its slack, m.
     region_place: vec4<f32>,
-    // The lead over the square of its length, 1/m; w: 1 where there is one.
+    // How far the choice reaches ahead of the eye, m; w unused.
+    lead: vec4<f32>,
+    // The same over the square of its length, 1/m; w: 1 where it is not 0.
     along: vec4<f32>,
     // Sine and cosine of its heading; z: its rim, m; w unused.
     region_turn: vec4<f32>,

@@ -10,6 +10,9 @@ const DISTANCE_M: f32 = 6.0;
 /// Half its thickness. Units: m.
 const HALF_M: f32 = 0.5;
 
+/// Speed of the particles: so slow that none leaves the picture, however many frames are drawn. Units: m/s.
+const SPEED_M_S: f32 = 6e-3;
+
 /// Adds the plugin.
 pub fn add(app: &mut App) {
     app.add_plugins(HanabiPlugin);
@@ -26,7 +29,7 @@ pub fn rain(app: &mut App, count: u32, like: Shown) {
     let writer = ExprWriter::new();
     let place = writer.lit(centre - 0.5 * size) + writer.rand(VectorType::VEC3F) * writer.lit(size);
     let init_place = SetAttributeModifier::new(Attribute::POSITION, place.expr());
-    let init_velocity = SetAttributeModifier::new(Attribute::VELOCITY, writer.lit(Vec3::NEG_Y * 6.0).expr());
+    let init_velocity = SetAttributeModifier::new(Attribute::VELOCITY, writer.lit(Vec3::NEG_Y * SPEED_M_S).expr());
     let init_age = SetAttributeModifier::new(Attribute::AGE, writer.lit(0.0_f32).expr());
     let init_lifetime = SetAttributeModifier::new(Attribute::LIFETIME, writer.lit(1.0e4_f32).expr());
     let spawner = SpawnerSettings::once((count as f32).into());

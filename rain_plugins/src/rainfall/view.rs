@@ -8,7 +8,7 @@ use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
 use rain_core::rainfall::{
     Container, DetailLaw, DropChoice, FADE_END, Follow, FollowSettings, LEAD_CAP_M, RANGE_CAP_M, RainViewVolume,
-    RateLadder, UnevenRain, quality_for_budget,
+    RateLadder, UnevenRain, expected_drops, quality_for_budget,
 };
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
@@ -345,8 +345,8 @@ pub(crate) fn choose_drops(
             motion: field.motion_after(since_tick),
             view: volume,
             kappa,
-            // The budget is a mean; twice it is the hard bound on memory.
-            most_drops: 2 * budget + 1024,
+            // Numbers are means, without the margins at the view's sides; twice as many is the bound on memory.
+            most_drops: 1024 + (2.0 * f64::from(budget).min(expected_drops(&spectrum, &volume, kappa))) as u32,
             uneven: uneven.clone(),
             region: follow,
             detail: settings.detail,

@@ -252,7 +252,7 @@ pub(super) fn count_drops(mut counts: ResMut<DropCounts>, report: Res<RainReport
     counts.0.read(move |words| {
         report.drops(words[0]);
         if words[2] > words[0] {
-            warn_once!("a rain view holds more than twice its streak budget; the rest is left out");
+            warn_once!("a rain view holds more drops than there is room for; the rest is left out");
         }
     });
 }

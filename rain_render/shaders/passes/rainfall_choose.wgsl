@@ -143,7 +143,7 @@ fn touches(centre: vec3<f32>, half: f32, margin: f32) -> bool {
 
 // Square of the distance from a place to the segment from the eye to the lead.
 fn from_lead_squared(place: vec3<f32>) -> f32 {
-    let off = place - view.lead.xyz * clamp(dot(place, choice.along.xyz), 0.0, 1.0);
+    let off = place - choice.lead.xyz * clamp(dot(place, choice.along.xyz), 0.0, 1.0);
     return dot(off, off);
 }
 

@@ -171,13 +171,14 @@ impl ChoiceGpu {
         }
     }
 
-    /// Uploads what is chosen from. `false`: there are more areas than fit, and the last are left out.
+    /// Uploads what is chosen from; no more than `most` drops are listed. `false`: there are more areas than fit, and the last are left out.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         choose: &Choose,
         choice: &DropChoice,
+        most: u32,
         near_reaches: &[f32; CLASS_COUNT],
         targets: &ChoiceTargets,
     ) -> bool {
@@ -188,7 +189,7 @@ impl ChoiceGpu {
         choose.prepare(device, self.key);
         let cells = choice.cells();
         let stage = u32::try_from(targets.stage.size() / 4).unwrap_or(u32::MAX);
-        let uniform = uniform(choice, &cells, near_reaches, stage);
+        let uniform = uniform(choice, &cells, most, near_reaches, stage);
         self.groups = uniform.groups;
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         grow(
@@ -338,11 +339,17 @@ fn room(limit: f32, runs: u32, left: u32) -> u32 {
 }
 
 /// The uniform for a stage of so many drops.
-fn uniform(choice: &DropChoice, cells: &ViewCells, near_reaches: &[f32; CLASS_COUNT], stage: u32) -> RainfallChoice {
+fn uniform(
+    choice: &DropChoice,
+    cells: &ViewCells,
+    most: u32,
+    near_reaches: &[f32; CLASS_COUNT],
+    stage: u32,
+) -> RainfallChoice {
     let mut out = RainfallChoice {
         planes: choice.view.side_planes.map(|plane| Vec4::to_array(&plane)),
-        most: choice.most_drops,
-        draws: choice.most_drops.div_ceil(QUADS_OF_A_DRAW),
+        most,
+        draws: most.div_ceil(QUADS_OF_A_DRAW),
         detail: match choice.detail {
             None => 0,
             Some(DetailLaw::OpticalDepth) => 1,
@@ -399,6 +406,7 @@ fn uniform(choice: &DropChoice, cells: &ViewCells, near_reaches: &[f32; CLASS_CO
     out.groups = out.runs.div_ceil(GROUP);
     let lead = cells.lead_m;
     if lead != Vec3::ZERO {
+        out.lead = lead.extend(0.0).to_array();
         out.along = (lead / lead.length_squared()).extend(1.0).to_array();
     }
     out

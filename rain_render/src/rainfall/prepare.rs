@@ -200,10 +200,11 @@ impl RainfallViewGpu {
     }
 
     /// Room for `most` drops.
-    fn grow(&mut self, device: &wgpu::Device, most: u32) {
+    fn grow(&mut self, device: &wgpu::Device, most: u32, holds: u32) {
         let storage = wgpu::BufferUsages::STORAGE;
         if most > self.capacity {
-            self.capacity = most.max(1).next_multiple_of(1024);
+            // A quarter more, so that setting rain does not ask for other buffers in each frame.
+            self.capacity = (most + most / 4).next_multiple_of(1024).min(holds);
             let capacity = u64::from(self.capacity);
             self.records = buffer(device, "rain drop records", RECORD_BYTES * capacity, storage);
             self.streaks = buffer(device, "rain streaks", STREAK_BYTES * capacity, storage);
@@ -253,21 +254,24 @@ impl RainfallViewGpu {
     ) -> bool {
         let placements = input.drops.placements();
         let uniform = input.uniform(&placements);
-        self.most = match input.drops {
+        let wanted = match input.drops {
             Drops::Chosen(choice) => choice.most_drops,
             Drops::Listed(container, _) => container.records.len() as u32,
         };
+        let holds = device.limits().max_storage_buffer_binding_size / STREAK_BYTES;
+        let holds = u32::try_from(holds).unwrap_or(u32::MAX);
+        self.most = wanted.min(holds);
         self.panes = uniform.panes;
         self.soft = uniform.soft > 0.0;
         self.patterned = uniform.patterned > 0;
         self.needs = ProjectKey::of(&uniform);
         gpu.project.prepare(device, self.needs);
-        self.grow(device, self.most);
+        self.grow(device, self.most, holds);
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         let mut whole = true;
         self.chooses = matches!(input.drops, Drops::Chosen(_));
         match input.drops {
-            Drops::Listed(container, _) => self.list(queue, &container.records),
+            Drops::Listed(container, _) => self.list(queue, &container.records[..self.most as usize]),
             Drops::Chosen(choice) => {
                 let targets = ChoiceTargets {
                     view: &self.uniform,
@@ -278,7 +282,7 @@ impl RainfallViewGpu {
                 };
                 let reaches = near_reaches(input, &placements);
                 let chooser = self.choice.get_or_insert_with(|| ChoiceGpu::new(device));
-                whole = chooser.prepare(device, queue, &gpu.choose, choice, &reaches, &targets);
+                whole = chooser.prepare(device, queue, &gpu.choose, choice, self.most, &reaches, &targets);
             }
         }
         self.bind(device, gpu, textures);
@@ -331,7 +335,8 @@ impl RainfallViewGpu {
         }));
     }
 
-    /// No more drops than this are drawn in this frame: as many as there are where they are listed.
+    /// No more drops than this are drawn in this frame: as many as there are where they are listed, unless the device's buffers
+    /// hold fewer.
     #[must_use]
     pub fn most_drops(&self) -> u32 {
         self.most

@@ -51,7 +51,7 @@ fn chosen(
         }
         bytemuck::pod_collect_to_vec(&gpu.read(buffer, 4 * count))
     };
-    let draws = u64::from(choice.most_drops.div_ceil(1 << 14));
+    let draws = u64::from(view_gpu.most_drops().div_ceil(1 << 14));
     let arguments = words(view_gpu.arguments(), 8 + 10 * draws);
     let records = words(view_gpu.records(), 2 * u64::from(arguments[0]));
     let mut work = arguments[4..7].to_vec();
@@ -320,6 +320,14 @@ fn no_more_are_drawn_than_asked_for_and_how_many_there_are_is_known() {
     let near: Vec<u32> = found.near.iter().copied().filter(|i| *i != u32::MAX).collect();
     let expected: Vec<u32> = whole.near.iter().copied().filter(|i| *i < most).collect();
     assert!(!near.is_empty() && near == expected);
+    // More than any buffer holds is as many as one holds.
+    let endless = DropChoice {
+        most_drops: u32::MAX,
+        ..cut
+    };
+    let found = chosen(&gpu, &pipelines, &mut view_gpu, &view, &endless, true);
+    assert!(view_gpu.most_drops() > most && view_gpu.most_drops() < u32::MAX);
+    assert_eq!(found.records, whole.records);
 }
 
 #[test]
@@ -400,9 +408,10 @@ fn dry_air_and_broken_views_draw_nothing() {
             "{of}"
         );
     }
-    // An eye that is nowhere stands at the origin.
+    // An eye that is nowhere stands at the origin, one that moves by no number stands still.
     let mut lost = rainy.clone();
     lost.view.eye_m = DVec3::NAN;
+    lost.view.eye_velocity_m_s = DVec3::NAN;
     let found = chosen(&gpu, &pipelines, &mut view_gpu, &view, &lost, false);
     assert_same(&found.records, &filled(&lost), 1e-3, 1e-3, "an eye that is nowhere");
 }

@@ -99,7 +99,7 @@ fn cards_are_drawn_while_it_rains_and_their_pictures_are_made_once() {
     assert_eq!(report.cards.len(), 20);
     let textures = StreakTextureSettings::default().bytes();
     let more = memory(&mut test) - before;
-    // Beside the pictures: cards, and room for twice as many single drops as asked for, 56 bytes each.
+    // Beside the pictures: cards, and room for twice as many single drops as there are in the mean, 56 bytes each.
     assert!((textures..textures + 5_000_000).contains(&more), "{more}");
 
     // Another family of spectra has other pictures.
