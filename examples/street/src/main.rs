@@ -8,6 +8,8 @@ fn main() -> ExitCode {
     let mut args = std::env::args().skip(1);
     let (dir, seed) = (args.next(), args.next());
     let seed = seed.map_or(Ok(street::DEFAULT_SEED), |s| s.parse());
+    // What looks like an option is no folder.
+    let dir = dir.filter(|dir| !dir.starts_with('-'));
     let (Some(dir), Ok(seed)) = (dir, seed) else {
         report("usage: street OUT_DIR [SEED]; SEED is a whole number from 0 to 2^64 - 1, default 7");
         return ExitCode::from(2);

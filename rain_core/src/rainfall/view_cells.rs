@@ -88,10 +88,10 @@ impl ViewCells {
         Self { classes, lead_m }
     }
 
-    /// How many there are.
+    /// Where the lattices stand.
     #[must_use]
-    pub fn count(&self) -> u32 {
-        self.classes.iter().map(|class| class.side.element_product()).sum()
+    pub fn placements(&self) -> [ClassPlacement; CLASS_COUNT] {
+        self.classes.map(|class| class.placement)
     }
 }
 

@@ -29,19 +29,6 @@ const FADE: f32 = 0.1;
 // Groups are counted in rows of this many.
 const ROW: u32 = 32768u;
 
-// Rain rate at a place (x, z) from the eye, mm/h.
-fn rate_at(place: vec2<f32>) -> f32 {
-    let head = areas[0];
-    var found = vec2<f32>(head.y * head.z, 1.0);
-    var row = 1u;
-    for (var i = 0u; i < u32(head.x); i += 1u) {
-        let area = packed_area(row, place);
-        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition) * area.density, head.z);
-        row = area.next;
-    }
-    return clamp(found.x * found.y, 0.0, 500.0);
-}
-
 // Presence of a drop of class `k`. Error: 1e-3 on its soft edge; 1e-2 where the rain is uneven.
 fn presence_of(k: u32, rank: f32, diameter_mm: f32, place: vec3<f32>) -> f32 {
     var limit: f32;
@@ -49,7 +36,7 @@ fn presence_of(k: u32, rank: f32, diameter_mm: f32, place: vec3<f32>) -> f32 {
         let ranks = choice.classes[k].ranks;
         limit = ranks.z * exp(ranks.w * diameter_mm);
     } else {
-        let rate = rate_at(place.xz);
+        let rate = packed_rate(place.xz);
         if (rate <= 0.0) {
             return 0.0;
         }

@@ -87,14 +87,7 @@ fn local_share(place: vec2<f32>) -> f32 {
     if (head.w <= 0.0) {
         return 1.0;
     }
-    var found = vec2<f32>(head.y * head.z, 1.0);
-    var row = 1u;
-    for (var i = 0u; i < u32(head.x); i += 1u) {
-        let area = packed_area(row, place);
-        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition) * area.density, head.z);
-        row = area.next;
-    }
-    return clamp(found.x * found.y / head.w, 0.0, 1.0);
+    return min(packed_rate(place) / head.w, 1.0);
 }
 
 fn stored(texel: vec2<i32>) -> vec2<u32> {

@@ -65,3 +65,16 @@ fn packed_area(row: u32, place: vec2<f32>) -> PackedArea {
     }
     return PackedArea(distance, outline.z, rain.xyz, density, painted, next);
 }
+
+// Rain rate at a place (x, z), mm/h.
+fn packed_rate(place: vec2<f32>) -> f32 {
+    let head = areas[0];
+    var found = vec2<f32>(head.y * head.z, 1.0);
+    var row = 1u;
+    for (var i = 0u; i < u32(head.x); i += 1u) {
+        let area = packed_area(row, place);
+        found = rain_area_joined(found, area.rain, rain_area_weight(area.distance, area.transition) * area.density, head.z);
+        row = area.next;
+    }
+    return clamp(found.x * found.y, 0.0, 500.0);
+}

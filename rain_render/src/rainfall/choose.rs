@@ -140,6 +140,17 @@ fn grow(device: &wgpu::Device, buffer: &mut wgpu::Buffer, label: &str, bytes: u6
     }
 }
 
+/// What is chosen from, and by what.
+pub(super) struct Asked<'a> {
+    pub choice: &'a DropChoice,
+    /// Its cells.
+    pub cells: &'a ViewCells,
+    /// No more drops are listed.
+    pub most: u32,
+    /// As [`super::near::near_reaches`] has them.
+    pub near_reaches: [f32; CLASS_COUNT],
+}
+
 /// What the bind group of a choice takes from its view.
 pub(super) struct ChoiceTargets<'a> {
     pub view: &'a wgpu::Buffer,
@@ -171,25 +182,23 @@ impl ChoiceGpu {
         }
     }
 
-    /// Uploads what is chosen from; no more than `most` drops are listed. `false`: there are more areas than fit, and the last are left out.
+    /// Uploads what is chosen from. `false`: there are more areas than fit, and the last are left out.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         choose: &Choose,
-        choice: &DropChoice,
-        most: u32,
-        near_reaches: &[f32; CLASS_COUNT],
+        asked: &Asked,
         targets: &ChoiceTargets,
     ) -> bool {
+        let choice = asked.choice;
         self.key = ChoiceKey {
             uneven: choice.uneven.is_some(),
             thinned: choice.region.is_some() || choice.detail.is_some(),
         };
         choose.prepare(device, self.key);
-        let cells = choice.cells();
         let stage = u32::try_from(targets.stage.size() / 4).unwrap_or(u32::MAX);
-        let uniform = uniform(choice, &cells, most, near_reaches, stage);
+        let uniform = uniform(asked, stage);
         self.groups = uniform.groups;
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         grow(
@@ -339,13 +348,13 @@ fn room(limit: f32, runs: u32, left: u32) -> u32 {
 }
 
 /// The uniform for a stage of so many drops.
-fn uniform(
-    choice: &DropChoice,
-    cells: &ViewCells,
-    most: u32,
-    near_reaches: &[f32; CLASS_COUNT],
-    stage: u32,
-) -> RainfallChoice {
+fn uniform(asked: &Asked, stage: u32) -> RainfallChoice {
+    let Asked {
+        choice,
+        cells,
+        most,
+        near_reaches,
+    } = *asked;
     let mut out = RainfallChoice {
         planes: choice.view.side_planes.map(|plane| Vec4::to_array(&plane)),
         most,

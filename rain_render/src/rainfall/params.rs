@@ -54,15 +54,6 @@ pub enum Drops<'a> {
 }
 
 impl Drops<'_> {
-    /// Where the lattices of their classes stand.
-    #[must_use]
-    pub fn placements(&self) -> Vec<ClassPlacement> {
-        match self {
-            Self::Chosen(choice) => choice.cells().classes.map(|class| class.placement).to_vec(),
-            Self::Listed(container, _) => container.classes.clone(),
-        }
-    }
-
     fn seed(&self) -> u64 {
         match self {
             Self::Chosen(choice) => choice.seed,

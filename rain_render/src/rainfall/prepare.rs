@@ -6,7 +6,7 @@ use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, t
 use crate::gpu_types::{RainfallView, Streak};
 use crate::overlay::{Overlay, OverlayKey};
 use crate::quad_indices::{DRAW_BYTES, QUADS_OF_A_DRAW, QuadIndices, draw_words};
-use crate::rainfall::choose::{ChoiceGpu, ChoiceTargets, Choose};
+use crate::rainfall::choose::{Asked, ChoiceGpu, ChoiceTargets, Choose};
 use crate::rainfall::near::near_reaches;
 use crate::rainfall::project::{Project, ProjectKey};
 use crate::rainfall::{Drops, RainfallInput};
@@ -252,27 +252,19 @@ impl RainfallViewGpu {
         input: &RainfallInput,
         textures: RainfallTextures,
     ) -> bool {
-        let placements = input.drops.placements();
-        let uniform = input.uniform(&placements);
-        let wanted = match input.drops {
-            Drops::Chosen(choice) => choice.most_drops,
-            Drops::Listed(container, _) => container.records.len() as u32,
-        };
-        let holds = device.limits().max_storage_buffer_binding_size / STREAK_BYTES;
-        let holds = u32::try_from(holds).unwrap_or(u32::MAX);
-        self.most = wanted.min(holds);
-        self.panes = uniform.panes;
-        self.soft = uniform.soft > 0.0;
-        self.patterned = uniform.patterned > 0;
-        self.needs = ProjectKey::of(&uniform);
-        gpu.project.prepare(device, self.needs);
-        self.grow(device, self.most, holds);
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         let mut whole = true;
-        self.chooses = matches!(input.drops, Drops::Chosen(_));
         match input.drops {
-            Drops::Listed(container, _) => self.list(queue, &container.records[..self.most as usize]),
+            Drops::Listed(container, _) => {
+                self.chooses = false;
+                let uniform = input.uniform(&container.classes);
+                self.upload(device, queue, gpu, &uniform, container.records.len() as u32);
+                self.list(queue, &container.records[..self.most as usize]);
+            }
             Drops::Chosen(choice) => {
+                self.chooses = true;
+                let cells = choice.cells();
+                let placements = cells.placements();
+                self.upload(device, queue, gpu, &input.uniform(&placements), choice.most_drops);
                 let targets = ChoiceTargets {
                     view: &self.uniform,
                     arguments: &self.arguments,
@@ -280,13 +272,39 @@ impl RainfallViewGpu {
                     near: &self.near_list,
                     stage: &self.streaks,
                 };
-                let reaches = near_reaches(input, &placements);
+                let asked = Asked {
+                    choice,
+                    cells: &cells,
+                    most: self.most,
+                    near_reaches: near_reaches(input, &placements),
+                };
                 let chooser = self.choice.get_or_insert_with(|| ChoiceGpu::new(device));
-                whole = chooser.prepare(device, queue, &gpu.choose, choice, self.most, &reaches, &targets);
+                whole = chooser.prepare(device, queue, &gpu.choose, &asked, &targets);
             }
         }
         self.bind(device, gpu, textures);
         whole
+    }
+
+    /// Uploads what is the same for drops of any origin, with room for `wanted` of them.
+    fn upload(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        gpu: &RainfallGpu,
+        uniform: &RainfallView,
+        wanted: u32,
+    ) {
+        let holds = device.limits().max_storage_buffer_binding_size / STREAK_BYTES;
+        let holds = u32::try_from(holds).unwrap_or(u32::MAX);
+        self.most = wanted.min(holds);
+        self.panes = uniform.panes;
+        self.soft = uniform.soft > 0.0;
+        self.patterned = uniform.patterned > 0;
+        self.needs = ProjectKey::of(uniform);
+        gpu.project.prepare(device, self.needs);
+        self.grow(device, self.most, holds);
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
     }
 
     fn bind(&mut self, device: &wgpu::Device, gpu: &RainfallGpu, textures: RainfallTextures) {

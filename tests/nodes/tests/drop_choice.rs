@@ -340,7 +340,7 @@ fn every_wide_streak_is_near_and_few_others_are() {
     let found = chosen(&gpu, &pipelines, &mut view_gpu, &view, &choice, true);
     assert!(found.near.is_sorted() && found.near.iter().all(|i| (*i as usize) < found.records.len()));
     let cells = choice.cells();
-    let placements = cells.classes.map(|class| class.placement);
+    let placements = cells.placements();
     let mut wide = 0;
     for (i, record) in (0_u32..).zip(&found.records) {
         let class = (record.drop & 15) as usize;
