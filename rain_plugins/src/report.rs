@@ -207,6 +207,21 @@ impl RainReport {
         keep(&mut self.lock().far_rain, count);
     }
 
+    /// Leaves out what the frames so far have drawn.
+    pub(crate) fn forget_counts(&self) {
+        let mut report = self.lock();
+        let report = &mut *report;
+        for counts in [
+            &mut report.drops,
+            &mut report.cards,
+            &mut report.splashes,
+            &mut report.drips,
+            &mut report.far_rain,
+        ] {
+            counts.clear();
+        }
+    }
+
     /// Notes the GPU memory in use.
     pub fn gpu_memory(&self, bytes: usize) {
         self.lock().gpu_memory_bytes = bytes;

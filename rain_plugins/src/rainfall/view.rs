@@ -150,6 +150,16 @@ impl RainView {
     }
 }
 
+/// Quality κ that a view had.
+#[derive(Clone, Copy, Debug)]
+struct Quality {
+    kappa: f64,
+    /// When. Units: s.
+    set_s: f64,
+    /// Of the picture.
+    size_px: UVec2,
+}
+
 /// What a view draws this frame; extracted to the render world.
 #[derive(Component, Clone, Debug, Default)]
 pub struct RainViewFrame {
@@ -159,8 +169,8 @@ pub struct RainViewFrame {
     pub shutter: Option<Shutter>,
     /// The last valid settings.
     settings: RainView,
-    /// Quality κ in force and the second it was last set.
-    kappa: Option<(f64, f64)>,
+    /// Quality in force.
+    quality: Option<Quality>,
     /// Where a container that was asked for stands.
     follow: Option<Follow>,
     /// Motion over the exposure.
@@ -318,15 +328,19 @@ pub(crate) fn choose_drops(
         let volume = view_volume(clip_from_view, size, transform, &motion, settings.exposure_s);
         let budget = settings.budget(*software);
         let target = quality_for_budget(&spectrum, &volume, f64::from(budget)).max(1e-6);
-        let kappa = match frame.kappa {
-            // Low-passed while the view runs; at once after a pause, when nobody sees the jump.
-            Some((kappa, then)) if (0.0..0.5).contains(&(now - then)) => {
-                let blend = 1.0 - (-(now - then) / QUALITY_TIME_S).exp();
-                kappa * (target / kappa).powf(blend)
+        let kappa = match frame.quality {
+            // Low-passed while the view runs; at once after a pause or in a picture of another size, when nobody sees the jump.
+            Some(quality) if (0.0..0.5).contains(&(now - quality.set_s)) && quality.size_px == size => {
+                let blend = 1.0 - (-(now - quality.set_s) / QUALITY_TIME_S).exp();
+                quality.kappa * (target / quality.kappa).powf(blend)
             }
             _ => target,
         };
-        frame.kappa = Some((kappa, now));
+        frame.quality = Some(Quality {
+            kappa,
+            set_s: now,
+            size_px: size,
+        });
 
         let follow = settings.container.map(|region| {
             let ahead = rotation * Vec3::NEG_Z;

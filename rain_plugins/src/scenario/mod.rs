@@ -11,6 +11,7 @@
 //! | `sky.rs` | the generated sky environment |
 //! | `probe.rs` | the scene mirrored in itself |
 //! | `mips.rs` | mip chains for loaded textures |
+//! | `measured.rs` | what captured frames took and drew |
 //! | `run.rs` | from file to results |
 //! | `masks.rs`, `contact.rs`, `plot.rs`, `font.rs`, `report.rs`, `output.rs` | the results |
 //! | `expect.rs`, `timeline.rs` | what was expected and what came out |
@@ -28,6 +29,7 @@ pub mod headless;
 mod load;
 mod locate;
 pub mod masks;
+pub mod measured;
 mod mips;
 pub mod output;
 pub mod path;

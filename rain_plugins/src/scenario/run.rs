@@ -12,7 +12,7 @@ use super::file::{Mask, Scenario, ScenePart};
 use super::masks;
 use super::output::{CONTACT, OutputError, OutputFolder, REPORT, TIMELINE, above_name, frame_name, mask_name};
 use super::plot;
-use super::report::{Budget, Counts, Memory, PassRow, Report, Tally, Timings};
+use super::report::{Budget, Memory, PassRow, Report, Timings};
 use super::session::Session;
 use super::timeline::{Series, Timeline, surface_name};
 use crate::report::PassName;
@@ -175,16 +175,7 @@ pub fn run(
 
     progress(Progress::Writing);
     let passes = pass_rows(&session);
-    let drawn = session.passes();
-    let [drops, cards, splashes, drips] = [&drawn.drops, &drawn.cards, &drawn.splashes, &drawn.drips]
-        .map(|counts| counts.iter().map(|n| u64::from(*n)).collect::<Vec<_>>());
-    let counts = Counts {
-        drops: Tally::of(&drops),
-        billboards: Tally::of(&cards),
-        splashes: Tally::of(&splashes),
-        drips: Tally::of(&drips),
-        ..Counts::default()
-    };
+    let counts = session.measured().counts();
     let (budget, _) = record.budget(&mut session);
     let expectations = evaluator.finish(&Evidence {
         timeline: &record.timeline,
@@ -405,7 +396,7 @@ fn pass_rows(session: &Session) -> Vec<PassRow> {
             let sum = |what: &str| -> Option<f64> {
                 let values: Vec<f64> = spans
                     .iter()
-                    .filter_map(|s| session.diagnostic_median(&format!("render/{s}/{what}")))
+                    .filter_map(|s| session.measured().median_of(&format!("render/{s}/{what}")))
                     .collect();
                 (!values.is_empty()).then(|| values.iter().sum())
             };

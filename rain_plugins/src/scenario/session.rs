@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use bevy::diagnostic::DiagnosticsStore;
+use bevy::camera::Viewport;
 use bevy::prelude::*;
 use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
@@ -16,6 +16,7 @@ use rain_ecs::prelude::*;
 use super::above::Above;
 use super::file::{Mask, Rings, Scenario};
 use super::masks::{texel_from_coverage, texel_from_depth, texel_from_water};
+use super::measured::Measured;
 use super::run::RunError;
 use super::stage::{self, Stage};
 use super::{headless, probe};
@@ -30,8 +31,16 @@ const FRAME_NS: u64 = 16_666_667;
 /// Frames a second in the run-up to a capture.
 const RUN_UP_FPS: f64 = 30.0;
 
+/// A side of frames that nobody sees, of pictures with this side. Units: px.
+fn unseen_px(side: u32) -> u32 {
+    side.div_ceil(8).max(side.min(32))
+}
+
 /// Updates after which a picture must have come back from the GPU.
 const PATIENCE_UPDATES: u32 = 50;
+
+/// The times of a frame's passes come back from the GPU in this update after it.
+const TIMES_AFTER_UPDATES: u32 = 2;
 
 /// One capture: the picture and the masks asked for.
 #[derive(Debug, Clone)]
@@ -69,6 +78,7 @@ pub struct Session {
     app: App,
     scenario: Scenario,
     now_ns: u64,
+    measured: Measured,
 }
 
 /// Bytes that came back from the GPU, by what they are.
@@ -128,6 +138,7 @@ impl Session {
             app,
             scenario: scenario.clone(),
             now_ns: 0,
+            measured: Measured::default(),
         })
     }
 
@@ -169,6 +180,18 @@ impl Session {
         }
     }
 
+    /// Whether frames are drawn small: those that nobody sees are there for what they leave behind, such as maps and waves.
+    fn draw_small(&mut self, small: bool) {
+        let camera = self.app.world().resource::<Stage>().camera;
+        let viewport = small.then(|| Viewport {
+            physical_size: UVec2::from_array(self.scenario.outputs.size.map(unseen_px)),
+            ..default()
+        });
+        if let Some(mut camera) = self.app.world_mut().get_mut::<Camera>(camera) {
+            camera.viewport = viewport;
+        }
+    }
+
     /// Lets time run to `time_s` without drawing.
     ///
     /// # Errors
@@ -206,7 +229,9 @@ impl Session {
             self.advance(start_s)?;
         }
         if end_s > self.now_s() {
+            self.draw_small(true);
             self.play(end_s, RUN_UP_FPS)?;
+            self.draw_small(false);
         }
         Ok(())
     }
@@ -224,6 +249,7 @@ impl Session {
             self.advance(first as f64 * 1e-9)?;
         }
         self.set_active(true);
+        self.draw_small(true);
         for i in (1..=warm).rev() {
             if i == 1 {
                 // A new map is in use one frame after it has been made.
@@ -234,6 +260,7 @@ impl Session {
             let to = at.saturating_sub(i * FRAME_NS).max(self.now_ns);
             self.update_to(to)?;
         }
+        self.draw_small(false);
         let stage = self.app.world().resource::<Stage>().clone();
         let returned = Returned::default();
         self.app.insert_resource(Pictured::default());
@@ -261,14 +288,21 @@ impl Session {
                 readers.push(reader);
             }
         }
+        Measured::begin(self.app.world());
         let clock = Instant::now();
         self.update_to(at.max(self.now_ns))?;
         let frame_ms = clock.elapsed().as_secs_f64() * 1e3;
+        self.measured.drawn(self.app.world());
         // An inactive view forgets what it drew.
         let above = self.scenario.outputs.above && self.scenario.rain.enabled;
         let above = above.then(|| Above::of(self.app.world(), stage.camera)).flatten();
         self.set_active(false);
-        for _ in 0..PATIENCE_UPDATES {
+        for _ in 0..TIMES_AFTER_UPDATES {
+            Measured::forget_times(self.app.world_mut());
+            headless::step(&mut self.app, Duration::ZERO)?;
+        }
+        self.measured.timed(self.app.world());
+        for _ in TIMES_AFTER_UPDATES..PATIENCE_UPDATES {
             let complete = returned.0.lock().unwrap_or_else(PoisonError::into_inner).len() == readers.len();
             if complete && self.app.world().resource::<Pictured>().0.is_some() {
                 break;
@@ -333,13 +367,10 @@ impl Session {
             .unwrap_or_default()
     }
 
-    /// Median of a render diagnostic, such as `render/rain_rainfall/elapsed_gpu`.
+    /// What captured frames took and drew.
     #[must_use]
-    pub fn diagnostic_median(&self, path: &str) -> Option<f64> {
-        let store = self.app.world().get_resource::<DiagnosticsStore>()?;
-        let found = store.iter().find(|d| d.path().as_str() == path)?;
-        let values: Vec<f64> = found.values().copied().collect();
-        super::report::median(&values)
+    pub fn measured(&self) -> &Measured {
+        &self.measured
     }
 
     /// Horizontal bounds of everything in the scene: min x, min z, max x, max z. Units: m.
