@@ -31,9 +31,11 @@ const FRAME_NS: u64 = 16_666_667;
 /// Frames a second in the run-up to a capture.
 const RUN_UP_FPS: f64 = 30.0;
 
-/// A side of frames that nobody sees, of pictures with this side. Units: px.
-fn unseen_px(side: u32) -> u32 {
-    side.div_ceil(8).max(side.min(32))
+/// Size of frames that nobody sees, of the shape of pictures of `size`. Units: px.
+fn unseen_px(size: [u32; 2]) -> UVec2 {
+    let size = UVec2::from_array(size);
+    let times = (size.min_element() / 32).clamp(1, 8);
+    size / times
 }
 
 /// Updates after which a picture must have come back from the GPU.
@@ -184,7 +186,7 @@ impl Session {
     fn draw_small(&mut self, small: bool) {
         let camera = self.app.world().resource::<Stage>().camera;
         let viewport = small.then(|| Viewport {
-            physical_size: UVec2::from_array(self.scenario.outputs.size.map(unseen_px)),
+            physical_size: unseen_px(self.scenario.outputs.size),
             ..default()
         });
         if let Some(mut camera) = self.app.world_mut().get_mut::<Camera>(camera) {

@@ -184,8 +184,15 @@ fn aim(
     // The scene under the plane is not mirrored; the plane in view space looks up.
     let view_from_world = view.transform.affine().matrix3.inverse();
     let normal = Vec3::from((view_from_world * Vec3A::NEG_Y).normalize());
+    // Cameras learn their picture's shape after this; that of the frame before may be another.
+    let size = view.camera.physical_viewport_size().unwrap_or_default();
     let projection = MirrorProjection(PerspectiveProjection {
         near_clip_plane: normal.extend(height - eye.y),
+        aspect_ratio: if size.min_element() > 0 {
+            size.x as f32 / size.y as f32
+        } else {
+            own.aspect_ratio
+        },
         ..own.clone()
     });
     let turned = Mat4::from_mat3(Mat3::from_quat(transform.rotation) * Mat3::from_diagonal(transform.scale));

@@ -1,5 +1,8 @@
 //! Level water mirrors the scene in each view that asks for it.
 
+use std::time::Duration;
+
+use bevy::camera::Viewport;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use image::RgbImage;
@@ -131,6 +134,36 @@ fn each_view_has_a_mirror_of_its_own_at_its_own_height() {
     let after = test.picture_of(target);
     let off = difference(&before, &after);
     assert!(off.share == 0.0, "{off:?}");
+}
+
+#[test]
+fn a_mirror_has_the_shape_of_its_picture_at_once() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = ponds();
+    let camera = test.camera;
+    let plain = test.picture();
+    test.world().entity_mut(camera).insert(PlanarReflection {
+        height_m: Some(PLATES[0].y),
+    });
+    test.frames(3, Duration::ZERO);
+    let before = test.picture();
+    assert!(difference(&before, &plain).share > 0.03, "the column is mirrored");
+    let draw_in = |test: &mut TestApp, viewport: Option<Viewport>| {
+        test.world().get_mut::<Camera>(camera).expect("a camera").viewport = viewport;
+    };
+    draw_in(
+        &mut test,
+        Some(Viewport {
+            physical_size: UVec2::splat(SIZE[1]),
+            ..default()
+        }),
+    );
+    test.frames(3, Duration::ZERO);
+    assert!(difference(&test.picture(), &before).share > 0.03, "a square picture");
+    draw_in(&mut test, None);
+    assert!(test.picture() == before, "the first frame of the old shape");
 }
 
 /// A bright column beside the first plate.
