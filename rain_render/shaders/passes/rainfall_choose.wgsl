@@ -22,11 +22,12 @@
 override UNEVEN: bool = true;
 override THINNED: bool = true;
 
-// Runs of a group.
-const GROUP: u32 = 64u;
+// Invocations of a workgroup, and runs of a group: few, for what stands before a run is summed up run by run.
+const WORKGROUP: u32 = 64u;
+const GROUP: u32 = 16u;
 // Share over which a drop fades that a law is about to leave out, of the law's number.
 const FADE: f32 = 0.1;
-// Groups are counted in rows of this many.
+// Workgroups are counted in rows of this many.
 const ROW: u32 = 32768u;
 
 // Presence of a drop of class `k`. Error: 1e-3 on its soft edge; 1e-2 where the rain is uneven.
@@ -106,31 +107,48 @@ fn detail_weight(distance: f32, mark: f32) -> f32 {
     return clamp((share * (1.0 + 0.5 * FADE) - mark) / (share * FADE), 0.0, 1.0);
 }
 
+// What all drops are held against, read once.
+struct Bounds {
+    // The side planes, (normal, offset), m.
+    a: vec4<f32>,
+    b: vec4<f32>,
+    c: vec4<f32>,
+    d: vec4<f32>,
+    // From the eye to the lead, m, and that over its square.
+    lead: vec3<f32>,
+    along: vec3<f32>,
+}
+
+fn bounds_of_view() -> Bounds {
+    let planes = choice.planes;
+    return Bounds(planes[0], planes[1], planes[2], planes[3], choice.lead.xyz, choice.along.xyz);
+}
+
 // Least distance of a place from the side planes, above 0 inside.
-fn depth_inside(place: vec3<f32>) -> f32 {
-    let a = choice.planes[0];
-    let b = choice.planes[1];
-    let c = choice.planes[2];
-    let d = choice.planes[3];
+fn depth_inside(bounds: Bounds, place: vec3<f32>) -> f32 {
     return min(
-        min(dot(a.xyz, place) + a.w, dot(b.xyz, place) + b.w),
-        min(dot(c.xyz, place) + c.w, dot(d.xyz, place) + d.w),
+        min(dot(bounds.a.xyz, place) + bounds.a.w, dot(bounds.b.xyz, place) + bounds.b.w),
+        min(dot(bounds.c.xyz, place) + bounds.c.w, dot(bounds.d.xyz, place) + bounds.d.w),
     );
 }
 
+// Distance by which a cube reaches over a plane.
+fn over(plane: vec4<f32>, centre: vec3<f32>, half: f32) -> f32 {
+    return dot(plane.xyz, centre) + plane.w + half * dot(abs(plane.xyz), vec3<f32>(1.0));
+}
+
 // Whether anything of a cube lies inside, with room for what reaches in from a margin.
-fn touches(centre: vec3<f32>, half: f32, margin: f32) -> bool {
-    var depth = 1e9;
-    for (var i = 0u; i < 4u; i += 1u) {
-        let plane = choice.planes[i];
-        depth = min(depth, dot(plane.xyz, centre) + plane.w + half * dot(abs(plane.xyz), vec3<f32>(1.0)));
-    }
+fn touches(bounds: Bounds, centre: vec3<f32>, half: f32, margin: f32) -> bool {
+    let depth = min(
+        min(over(bounds.a, centre, half), over(bounds.b, centre, half)),
+        min(over(bounds.c, centre, half), over(bounds.d, centre, half)),
+    );
     return depth >= -margin - 0.01;
 }
 
 // Square of the distance from a place to the segment from the eye to the lead.
-fn from_lead_squared(place: vec3<f32>) -> f32 {
-    let off = place - choice.lead.xyz * clamp(dot(place, choice.along.xyz), 0.0, 1.0);
+fn from_lead_squared(bounds: Bounds, place: vec3<f32>) -> f32 {
+    let off = place - bounds.lead * clamp(dot(place, bounds.along), 0.0, 1.0);
     return dot(off, off);
 }
 
@@ -173,6 +191,7 @@ fn enlist(run: Run, word: u32, patterned: bool, at: vec2<u32>) {
 // Finds the drops of a run that the view draws, and how many of them may have a pattern: all or none. They are staged, or
 // with `enlisting` listed from `start` on.
 fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
+    let bounds = bounds_of_view();
     let own = choice.classes[run.k];
     let placed = view.classes[run.k];
     let edge = placed.fraction.w;
@@ -188,8 +207,8 @@ fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
         let corner = first + vec3<f32>(edge * f32(c), 0.0, 0.0);
         let centre = corner + half;
         let from_eye = length(clamp(vec3<f32>(0.0), corner, corner + edge));
-        let nearest = select(from_eye, sqrt(from_lead_squared(centre)) - half * sqrt(3.0), choice.along.w > 0.0);
-        if (nearest > own.reach.x || !touches(centre, half, margin)) {
+        let nearest = select(from_eye, sqrt(from_lead_squared(bounds, centre)) - half * sqrt(3.0), choice.along.w > 0.0);
+        if (nearest > own.reach.x || !touches(bounds, centre, half, margin)) {
             continue;
         }
         let key = rain_cell_key(placed.stream.xyz, placed.cell.xyz + run.place + vec3<i32>(i32(c), 0, 0));
@@ -201,8 +220,8 @@ fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
                 break;
             }
             let place = corner + rain_drop_place(key, i) * edge;
-            let square = from_lead_squared(place);
-            if (square > furthest || depth_inside(place) < -(margin + 0.01)) {
+            let square = from_lead_squared(bounds, place);
+            if (square > furthest || depth_inside(bounds, place) < -(margin + 0.01)) {
                 continue;
             }
             var presence = 1.0;
@@ -231,7 +250,7 @@ fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
 }
 
 fn numbered(group: vec3<u32>, local: u32) -> u32 {
-    return (group.y * ROW + group.x) * GROUP + local;
+    return (group.y * ROW + group.x) * WORKGROUP + local;
 }
 
 fn count_of(index: u32) -> vec2<u32> {
@@ -316,7 +335,7 @@ fn list(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     var start = sums[index / GROUP];
-    for (var before = index - local; before < index; before += 1u) {
+    for (var before = index - index % GROUP; before < index; before += 1u) {
         start += count_of(before);
     }
     let found = count_of(index);

@@ -66,13 +66,8 @@ fn behind_glass(place: vec3<f32>) -> bool {
     return false;
 }
 
-// Error: 0.02 px in place; 5 % of the optical depth of all drops together.
-@compute @workgroup_size(64)
-fn project(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x >= arguments[0]) {
-        return;
-    }
-    let record = records[id.x];
+// The streak of a drop, without size where none is drawn.
+fn streak_of(record: DropRecord) -> Streak {
     let presence = f32(record.drop >> 16u) / 65535.0;
     let k = view.classes[record.drop & 15u];
     let drop = rain_field_drop(record, k);
@@ -94,8 +89,7 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
     let near = max(view.near, 0.02);
     if (weight <= 0.0 || (head.w < near && tail.w < near)
         || sheltered(p, before, k.velocity.w)) {
-        streaks[id.x] = out;
-        return;
+        return out;
     }
     // Cut at the near plane before dividing.
     if (head.w < near) {
@@ -123,5 +117,13 @@ fn project(@builtin(global_invocation_id) id: vec3<u32>) {
         weight * rain_contrast(opacity, view.contrast),
     );
     out.light = vec4<f32>(drop_radiance(middle), weight * min(1.0, size / width));
-    streaks[id.x] = out;
+    return out;
+}
+
+// Error: 0.02 px in place; 5 % of the optical depth of all drops together.
+@compute @workgroup_size(64)
+fn project(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x < arguments[0]) {
+        streaks[id.x] = streak_of(records[id.x]);
+    }
 }

@@ -18,10 +18,13 @@ use crate::compose;
 use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
 use crate::quad_indices::QUADS_OF_A_DRAW;
 
-/// Runs of a group, as the shader has it.
-const GROUP: u32 = 64;
+/// Invocations of a workgroup, as the shader has it.
+const WORKGROUP: u32 = 64;
 
-/// Groups are dispatched in rows of this many, as the shader has it.
+/// Runs of a group, as the shader has it.
+const GROUP: u32 = 16;
+
+/// Workgroups are dispatched in rows of this many, as the shader has it.
 const ROW: u32 = 32_768;
 
 /// What the choices of views differ by.
@@ -119,6 +122,7 @@ pub(super) struct ChoiceGpu {
     ladder_of: Option<std::sync::Arc<RateLadder>>,
     packed: AreaFieldF32,
     key: ChoiceKey,
+    runs: u32,
     groups: u32,
     bind_group: Option<wgpu::BindGroup>,
 }
@@ -177,6 +181,7 @@ impl ChoiceGpu {
             ladder_of: None,
             packed: AreaFieldF32::default(),
             key: ChoiceKey::default(),
+            runs: 0,
             groups: 0,
             bind_group: None,
         }
@@ -199,7 +204,7 @@ impl ChoiceGpu {
         choose.prepare(device, self.key);
         let stage = u32::try_from(targets.stage.size() / 4).unwrap_or(u32::MAX);
         let uniform = uniform(asked, stage);
-        self.groups = uniform.groups;
+        (self.runs, self.groups) = (uniform.runs, uniform.groups);
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         grow(
             device,
@@ -277,13 +282,16 @@ impl ChoiceGpu {
         let (Some(pipelines), Some(bind_group)) = (slot.and_then(OnceLock::get), &self.bind_group) else {
             return;
         };
-        let rows = |groups: u32| (groups.min(ROW), groups.div_ceil(ROW));
+        let rows = |invocations: u32| {
+            let groups = invocations.div_ceil(WORKGROUP);
+            (groups.min(ROW), groups.div_ceil(ROW))
+        };
         pass.set_bind_group(0, bind_group, &[]);
         for (pipeline, (x, y)) in [
-            (&pipelines.count, rows(self.groups)),
-            (&pipelines.sum, rows(self.groups.div_ceil(GROUP))),
+            (&pipelines.count, rows(self.runs)),
+            (&pipelines.sum, rows(self.groups)),
             (&pipelines.scan, (1, 1)),
-            (&pipelines.list, rows(self.groups)),
+            (&pipelines.list, rows(self.runs)),
         ] {
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(x, y, 1);
