@@ -158,10 +158,14 @@ struct DropRecord {
 struct Streak {
     // Head and tail, px from the upper left corner.
     ends: vec4<f32>,
-    // Depth of head and tail, half width px (0: not drawn, below 0: behind what is transparent), opacity.
-    shape: vec4<f32>,
-    // Radiance; w: coverage of a pixel by the swept drop.
-    light: vec4<f32>,
+    // Depth of head and tail, half width px (0: not drawn, below 0: behind what is transparent).
+    shape: vec3<f32>,
+    // Opacity, and coverage of a pixel by the swept drop, as halves.
+    shares: u32,
+    // Radiance.
+    light: vec3<f32>,
+    // Distance from head and tail to the scene behind them in lengths of the fade, as halves.
+    gaps: u32,
 }
 
 // Levels of standing water over the ground, one texel a cell. Positions are relative to the eye, in metres.

@@ -115,7 +115,7 @@ pub const PASSES: &[Pass] = passes![
 ];
 
 /// Functions over bindings that some passes share, and those passes.
-const SHARED: [(&str, &[&str]); 2] = [
+const SHARED: [(&str, &[&str]); 3] = [
     (
         include_str!("../shaders/shared/area_rows.wgsl"),
         &["water_map", "haze_areas", "rainfall_choose"],
@@ -123,6 +123,10 @@ const SHARED: [(&str, &[&str]); 2] = [
     (
         include_str!("../shaders/shared/streak_quads.wgsl"),
         &["rainfall_draw", "rainfall_near"],
+    ),
+    (
+        include_str!("../shaders/shared/scene_gap.wgsl"),
+        &["rainfall_project", "rainfall_near"],
     ),
 ];
 

@@ -120,8 +120,10 @@ pub struct RainfallChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Streak {
     pub ends: [f32; 4],
-    pub shape: [f32; 4],
-    pub light: [f32; 4],
+    pub shape: [f32; 3],
+    pub shares: u32,
+    pub light: [f32; 3],
+    pub gaps: u32,
 }
 
 /// Levels of standing water over the ground.

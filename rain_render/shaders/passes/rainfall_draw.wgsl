@@ -3,18 +3,15 @@
 
 @group(0) @binding(0) var<uniform> view: RainfallView;
 @group(0) @binding(1) var<storage, read> streaks: array<Streak>;
-@group(0) @binding(2) var scene_depth: texture_depth_2d;
 
 // Whether streaks fade where they meet the scene.
 override SOFT: bool = true;
 // Whether coverage is drawn instead of light.
 override COVERAGE: bool = false;
 
-// What lies before an end by more than this many lengths of the fade is something else than what the streak meets: the
+// What lies before an end by this many lengths of the fade or more is something else than what the streak meets: the
 // depth test leaves out what it hides, and the rest fades as the other end does.
 const MEETS: f32 = 1.0;
-// Far from anything; keeps the numbers between the ends exact.
-const CLEAR: f32 = 1e4;
 
 struct EvenVertex {
     @builtin(position) position: vec4<f32>,
@@ -22,12 +19,6 @@ struct EvenVertex {
     @location(0) @interpolate(linear) strip: vec3<f32>,
     // Light and opacity, or coverage, in its middle, as halves; half its width and length and half a pixel, px.
     @location(1) @interpolate(flat) whole: vec4<u32>,
-}
-
-// Distance to the scene behind an end; between both ends it goes on a straight line, as it does before planes.
-fn gap_at(end: vec2<f32>, depth: f32) -> f32 {
-    let inside = clamp(end, vec2<f32>(0.0), view.viewport.zw - 1.0);
-    return clamp(gap_before_scene(inside + view.viewport.xy, depth), -MEETS, CLEAR);
 }
 
 // A corner of a streak of this half width; nothing of one that has none, or a pattern.
@@ -39,14 +30,15 @@ fn corner(streak: Streak, half: f32, vertex_index: u32) -> EvenVertex {
     let quad = rain_streak_corner(streak.ends, half, at);
     var gap = 1.0;
     if (SOFT) {
-        let head = gap_at(streak.ends.xy, streak.shape.x);
-        let tail = gap_at(streak.ends.zw, streak.shape.y);
-        let own = select(head, tail, at.y > 0.0);
-        gap = select(own, max(head, tail), own <= -MEETS);
+        // Between both ends it goes on a straight line, as it does before planes.
+        let gaps = unpack2x16float(streak.gaps);
+        let own = select(gaps.x, gaps.y, at.y > 0.0);
+        gap = select(own, max(gaps.x, gaps.y), own <= -MEETS);
     }
     // Halves end at 65504.
-    let light = vec4<f32>(min(streak.light.rgb, vec3<f32>(65000.0)), 1.0) * streak.shape.w;
-    let whole = select(light, vec4<f32>(streak.light.w, 0.0, 0.0, streak.light.w), COVERAGE);
+    let shares = unpack2x16float(streak.shares);
+    let light = vec4<f32>(min(streak.light, vec3<f32>(65000.0)), 1.0) * shares.x;
+    let whole = select(light, vec4<f32>(shares.y, 0.0, 0.0, shares.y), COVERAGE);
     return EvenVertex(
         vec4<f32>(ndc_of(quad.pixel), mix(streak.shape.x, streak.shape.y, quad.along), 1.0),
         vec3<f32>(quad.local, gap),

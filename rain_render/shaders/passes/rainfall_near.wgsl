@@ -24,6 +24,18 @@ struct NearVertex {
     @location(4) @interpolate(flat) which: u32,
 }
 
+// How much of what is drawn here is left before the scene.
+fn before_scene(position: vec4<f32>) -> f32 {
+    if (view.soft <= 0.0) {
+        return 1.0;
+    }
+    return clamp(gap_before_scene(position.xy, position.z), 0.0, 1.0);
+}
+
+fn presence(in: StreakVertex) -> f32 {
+    return rain_strip(in.local.x, in.size.x) * rain_strip(in.local.y, in.size.y) * before_scene(in.position);
+}
+
 // A corner of a streak of this half width; nothing of one that has no pattern.
 fn corner(which: u32, half: f32, vertex_index: u32) -> NearVertex {
     var quad = no_corner();

@@ -8,13 +8,19 @@
 @group(0) @binding(5) var environment_sampler: sampler;
 // The first word: how many drops there are.
 @group(0) @binding(6) var<storage, read> arguments: array<u32>;
+@group(0) @binding(7) var scene_depth: texture_depth_2d;
 
 // Drops are tested against the cover map: 0 not at all, 1 where all fall straight down, 2 else.
 override COVER: u32 = 2u;
-// Whether there are an environment map, lamps, and things that are transparent.
+// Whether there are an environment map, lamps, things that are transparent, and a fade before the scene.
 override ENVIRONMENT: bool = true;
 override LAMPS: bool = true;
 override PANES: bool = true;
+override SOFT: bool = true;
+
+// Gaps before the scene are kept between these: behind it nothing is told apart, and far from it halves are exact enough.
+const BEHIND: f32 = -1.0;
+const CLEAR: f32 = 1e4;
 
 // Whether a drop is under a roof or has met one in the exposure.
 fn sheltered(p: vec3<f32>, before: vec3<f32>, inverse_speed: f32) -> bool {
@@ -66,6 +72,12 @@ fn behind_glass(place: vec3<f32>) -> bool {
     return false;
 }
 
+// Distance from an end, in px, to the scene behind it.
+fn gap_at(end: vec2<f32>, depth: f32) -> f32 {
+    let inside = clamp(end, vec2<f32>(0.0), view.viewport.zw - 1.0);
+    return clamp(gap_before_scene(inside + view.viewport.xy, depth), BEHIND, CLEAR);
+}
+
 // The streak of a drop, without size where none is drawn.
 fn streak_of(record: DropRecord) -> Streak {
     let presence = f32(record.drop >> 16u) / 65535.0;
@@ -74,10 +86,7 @@ fn streak_of(record: DropRecord) -> Streak {
     let diameter_mm = drop.diameter;
     let p = drop.place;
 
-    var out: Streak;
-    out.ends = vec4<f32>(0.0);
-    out.shape = vec4<f32>(0.0);
-    out.light = vec4<f32>(0.0);
+    var out = Streak(vec4<f32>(0.0), vec3<f32>(0.0), 0u, vec3<f32>(0.0), 0u);
 
     let reach = min(view.kappa * rain_visible_range(diameter_mm, view.focal, view.exposure), RAIN_RANGE_CAP_M);
     let weight = presence
@@ -110,13 +119,13 @@ fn streak_of(record: DropRecord) -> Streak {
     let opacity = min(1.0, 0.7853982 * size * size * secant / (width * span));
     let middle = 0.5 * (p + before);
     out.ends = vec4<f32>(a, b);
-    out.shape = vec4<f32>(
-        head.z / head.w,
-        tail.z / tail.w,
-        select(0.5, -0.5, behind_glass(middle)) * width,
-        weight * rain_contrast(opacity, view.contrast),
-    );
-    out.light = vec4<f32>(drop_radiance(middle), weight * min(1.0, size / width));
+    let depths = vec2<f32>(head.z / head.w, tail.z / tail.w);
+    out.shape = vec3<f32>(depths, select(0.5, -0.5, behind_glass(middle)) * width);
+    out.shares = pack2x16float(weight * vec2<f32>(rain_contrast(opacity, view.contrast), min(1.0, size / width)));
+    out.light = drop_radiance(middle);
+    if (SOFT) {
+        out.gaps = pack2x16float(vec2<f32>(gap_at(a, depths.x), gap_at(b, depths.y)));
+    }
     return out;
 }
 

@@ -1,4 +1,4 @@
-// Quads of projected streaks, over the bindings `view`, `streaks` and `scene_depth` of a pass.
+// Quads of projected streaks, over the bindings `view` and `streaks` of a pass.
 
 // Widths between which streaks take on their pattern, px.
 const PATTERN_FROM: f32 = 1.5;
@@ -39,27 +39,8 @@ fn streak_corner(streak: Streak, half: f32, reach: f32, vertex_index: u32) -> St
     out.position = vec4<f32>(ndc_of(quad.pixel), mix(streak.shape.x, streak.shape.y, quad.along), 1.0);
     out.local = quad.local;
     out.size = quad.size;
-    out.light = vec4<f32>(streak.light.rgb, streak.shape.w);
-    out.coverage = streak.light.w;
+    let shares = unpack2x16float(streak.shares);
+    out.light = vec4<f32>(streak.light, shares.x);
+    out.coverage = shares.y;
     return out;
-}
-
-// Distance from what is drawn at a place of the target to the scene behind it, in lengths of the fade.
-fn gap_before_scene(place: vec2<f32>, depth: f32) -> f32 {
-    // Infinite reverse-Z: distance = near / depth.
-    let scene = view.near / max(textureLoad(scene_depth, vec2<i32>(place), 0), 1e-7);
-    let own = view.near / max(depth, 1e-7);
-    return (scene - own) / view.soft;
-}
-
-// How much of what is drawn here is left before the scene.
-fn before_scene(position: vec4<f32>) -> f32 {
-    if (view.soft <= 0.0) {
-        return 1.0;
-    }
-    return clamp(gap_before_scene(position.xy, position.z), 0.0, 1.0);
-}
-
-fn presence(in: StreakVertex) -> f32 {
-    return rain_strip(in.local.x, in.size.x) * rain_strip(in.local.y, in.size.y) * before_scene(in.position);
 }

@@ -103,11 +103,10 @@ impl RainfallGpu {
         let even = [
             uniform_entry(0, raster, size_of::<RainfallView>()),
             storage_entry(1, raster, true),
-            texture_entry(2, raster, depth, wgpu::TextureViewDimension::D2),
         ];
         let draw = Overlay::new(device, "rain rainfall draw", "rainfall_draw", &even)
             .with_constants(|key| vec![("SOFT", f64::from(key.soft)), ("COVERAGE", f64::from(key.coverage))]);
-        let [view, streaks, scene] = even;
+        let [view, streaks] = even;
         let near = Overlay::new(
             device,
             "rain rainfall near",
@@ -115,7 +114,7 @@ impl RainfallGpu {
             &[
                 view,
                 streaks,
-                scene,
+                texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
                 storage_entry(3, wgpu::ShaderStages::FRAGMENT, true),
                 texture_entry(
                     4,
@@ -325,26 +324,26 @@ impl RainfallViewGpu {
                 entry(4, wgpu::BindingResource::TextureView(&environment)),
                 entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
                 entry(6, self.arguments.as_entire_binding()),
+                entry(7, wgpu::BindingResource::TextureView(&scene)),
             ],
         }));
         let even = [
             entry(0, self.uniform.as_entire_binding()),
             entry(1, self.streaks.as_entire_binding()),
-            entry(2, wgpu::BindingResource::TextureView(&scene)),
         ];
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain rainfall draw"),
             layout: &gpu.draw.layout,
             entries: &even,
         }));
-        let [uniform, streaks, depth] = even;
+        let [uniform, streaks] = even;
         self.near = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain rainfall near"),
             layout: &gpu.near.layout,
             entries: &[
                 uniform,
                 streaks,
-                depth,
+                entry(2, wgpu::BindingResource::TextureView(&scene)),
                 entry(3, self.records.as_entire_binding()),
                 entry(4, wgpu::BindingResource::TextureView(&environment)),
                 entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),

@@ -26,6 +26,7 @@ pub(super) struct ProjectKey {
     environment: bool,
     lamps: bool,
     panes: bool,
+    soft: bool,
 }
 
 impl ProjectKey {
@@ -34,6 +35,7 @@ impl ProjectKey {
         environment: true,
         lamps: true,
         panes: true,
+        soft: true,
     };
 
     /// What a view needs.
@@ -52,11 +54,12 @@ impl ProjectKey {
             environment: view.environment[..3] != [0.0; 3],
             lamps: view.lamps > 0,
             panes: view.panes > 0,
+            soft: view.soft > 0.0,
         }
     }
 
     fn index(self) -> usize {
-        let flags = [self.environment, self.lamps, self.panes];
+        let flags = [self.environment, self.lamps, self.panes, self.soft];
         flags
             .into_iter()
             .fold(self.cover as usize, |index, flag| 2 * index + usize::from(flag))
@@ -70,7 +73,7 @@ pub(super) struct Project {
     module: wgpu::ShaderModule,
     /// Views have pipelines of their own.
     apart: bool,
-    pipelines: [OnceLock<wgpu::ComputePipeline>; 24],
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 48],
 }
 
 impl Project {
@@ -96,13 +99,19 @@ impl Project {
                 ),
                 sampler_entry(5, compute),
                 storage_entry(6, compute, true),
+                texture_entry(
+                    7,
+                    compute,
+                    wgpu::TextureSampleType::Depth,
+                    wgpu::TextureViewDimension::D2,
+                ),
             ],
         });
         let project = Self {
             layout,
             module: compose::shader(device, "rainfall_project"),
             apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
-            pipelines: Default::default(),
+            pipelines: [const { OnceLock::new() }; 48],
         };
         if !project.apart {
             project.prepare(device, ProjectKey::EVERYTHING);
@@ -131,6 +140,7 @@ impl Project {
                         ("ENVIRONMENT", f64::from(key.environment)),
                         ("LAMPS", f64::from(key.lamps)),
                         ("PANES", f64::from(key.panes)),
+                        ("SOFT", f64::from(key.soft)),
                     ],
                 )
             });

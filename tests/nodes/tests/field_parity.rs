@@ -47,6 +47,11 @@ impl Default for FieldView {
     }
 }
 
+/// The two halves of a word: the lower one first.
+pub fn half_pair(word: u32) -> [f32; 2] {
+    [word as u16, (word >> 16) as u16].map(|bits| half::f16::from_bits(bits).to_f32())
+}
+
 impl FieldView {
     pub fn focal_px(&self) -> f32 {
         0.5 * self.size.y / (0.5 * self.fov_y).tan()
@@ -246,7 +251,7 @@ fn streaks_show_lamps_as_the_cpu_has_them() {
         let middle = head - container.classes[class].velocity_m_s * (0.5 * view.exposure_s);
         let lamps: Vec3 = view.lamps.iter().map(|lamp| lamp.radiance(middle)).sum();
         // Under an even light of 1 a drop shows 0.884 + 0.066 of it.
-        for (found, lamp) in streak.light[..3].iter().zip(lamps.to_array()) {
+        for (found, lamp) in streak.light.iter().zip(lamps.to_array()) {
             // The shader's 1e-3; places agree within 1e-5 m, which is 1e-4 of the light 0.2 m from a lamp, and ten times
             // that on the flank of the beam, 0.07 wide in its cosine; 0.95 has single precision's 1e-7.
             assert!(

@@ -8,7 +8,7 @@ use rain_render::rainfall::{
 };
 
 use crate::device::{Device, device};
-use crate::field_parity::FieldView;
+use crate::field_parity::{FieldView, half_pair};
 
 pub const SIDE: u32 = 512;
 const SEED: u64 = 5;
@@ -44,7 +44,7 @@ fn one_drop(gpu: &Device, pipelines: &RainfallGpu, least_mm: f64, width_px: f32)
         let found = container.records.iter().zip(&streaks).position(|(record, s)| {
             let width = 2.0 * s.shape[2];
             let large = SizeClass::new((record.drop & 15) as usize).min_mm >= least_mm;
-            large && width > width_px && width < 3.0 * width_px && middle(s) && s.light[3] > 0.999
+            large && width > width_px && width < 3.0 * width_px && middle(s) && half_pair(s.shares)[1] > 0.999
         });
         if let Some(found) = found {
             container.records = vec![container.records[found]];

@@ -8,7 +8,7 @@ use rain_render::gpu_types::Streak;
 use rain_render::rainfall::RainfallGpu;
 
 use crate::device::{Device, device};
-use crate::field_parity::FieldView;
+use crate::field_parity::{FieldView, half_pair};
 
 /// Σ opacity · width · length of the streaks whose middles are in the picture, per pixel: the picture's mean optical
 /// depth, as long as opacities are small. The lengths follow the draw shader: at least 1 px, the drop's own size added.
@@ -18,11 +18,11 @@ fn optical_depth(view: &FieldView, streaks: &[Streak]) -> f64 {
         let (head, tail) = (Vec2::new(s.ends[0], s.ends[1]), Vec2::new(s.ends[2], s.ends[3]));
         let middle = 0.5 * (head + tail);
         if middle.cmpge(Vec2::ZERO).all() && middle.cmplt(view.size).all() {
-            // Half the width is stored; the light's w holds weight · size / width (at most weight).
+            // Half the width is stored.
             let width = f64::from(2.0 * s.shape[2]);
             let size = if width > 1.0 { width } else { 0.0 };
             let length = (f64::from((head - tail).length()) + size).max(1.0);
-            sum += f64::from(s.shape[3]) * width * length;
+            sum += f64::from(half_pair(s.shares)[0]) * width * length;
         }
     }
     sum / f64::from(view.size.x * view.size.y)
