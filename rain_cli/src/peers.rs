@@ -15,6 +15,14 @@ use serde_json::Value;
 /// What draws rain into the scene, as `peer_frames` names it; the first is what the others are divided by.
 const KINDS: [&str; 5] = ["rain_near_only", "rain", "hanabi", "weather", "weather_own"];
 
+/// The scene without rain that a contender is compared with: for all but the whole of our rain it is not lit.
+fn dry_kind(kind: &str) -> usize {
+    usize::from(kind == "rain")
+}
+
+/// Those scenes.
+const DRY: [&str; 2] = ["none", "none_lit"];
+
 /// Frames of a turn that count.
 const FRAMES: u32 = 4;
 
@@ -187,21 +195,26 @@ impl Drop for Contender {
 
 /// Frames of all contenders at one count, in turn.
 fn frames(programs: &Path, count: u32, rounds: u32) -> Result<Vec<Row>, String> {
-    let mut dry = Contender::start(programs, "none", count)?.0;
+    let mut dry = Vec::new();
+    for kind in DRY {
+        dry.push(Contender::start(programs, kind, count)?.0);
+    }
     let mut contenders = Vec::new();
     for kind in KINDS {
         contenders.push(Contender::start(programs, kind, count)?);
     }
     let mut costs = vec![Vec::new(); KINDS.len()];
-    let mut before = dry.turn()?;
+    let empty = |dry: &mut Vec<Contender>| dry.iter_mut().map(Contender::turn).collect::<Result<Vec<_>, _>>();
+    let mut before = empty(&mut dry)?;
     for _ in 0..rounds {
         let mut turns = Vec::new();
         for (contender, _) in &mut contenders {
             turns.push(contender.turn()?);
         }
-        let after = dry.turn()?;
-        for (list, turn) in costs.iter_mut().zip(turns) {
-            list.push(turn.over(before, after));
+        let after = empty(&mut dry)?;
+        for ((list, turn), kind) in costs.iter_mut().zip(turns).zip(KINDS) {
+            let dry = dry_kind(kind);
+            list.push(turn.over(before[dry], after[dry]));
         }
         before = after;
     }

@@ -11,7 +11,6 @@ use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::{CAUSTIC_END_M, CAUSTIC_RAYS, CAUSTIC_TEXELS, CAUSTIC_WAYS_M, LEAST_ELEVATION, RING_FADE};
 
-use crate::quad_indices::QUADS_OF_A_DRAW;
 use crate::rainfall::NO_DROP;
 
 /// Structs that cross from the CPU.
@@ -200,7 +199,6 @@ pub fn constants() -> String {
     }
     for (name, value) in [
         ("RAIN_NO_DROP", NO_DROP),
-        ("RAIN_QUADS_OF_A_DRAW", QUADS_OF_A_DRAW),
         ("RAIN_RATE_KNOTS", RATE_KNOTS as u32),
         ("RAIN_BOW_KNOTS", BOW_KNOTS as u32),
         ("RAIN_CAUSTIC_TEXELS", CAUSTIC_TEXELS),

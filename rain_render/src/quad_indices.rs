@@ -1,16 +1,27 @@
 //! Indices of quads whose two triangles share corners: four vertices a quad instead of six.
 
-/// Quads of one draw: as many as 16-bit indices reach.
-pub(crate) const QUADS_OF_A_DRAW: u32 = 1 << 14;
+/// Quads of one draw at most: as many as 16-bit indices reach.
+const MOST_QUADS: u32 = 1 << 14;
+
+/// Quads of one draw: on a software device, which shades all corners of a draw before its first triangle, so few that they stay
+/// in the cache.
+pub(crate) fn quads_of_a_draw(device: &wgpu::Device) -> u32 {
+    if device.adapter_info().device_type == wgpu::DeviceType::Cpu {
+        1 << 10
+    } else {
+        MOST_QUADS
+    }
+}
 
 /// Indices of the first quads, for any number of them: draws after the first begin at later vertices.
 #[derive(Debug)]
 pub(crate) struct QuadIndices(wgpu::Buffer);
 
 impl QuadIndices {
-    /// 192 KiB that live with the device.
+    /// Up to 192 KiB that live with the device.
     pub fn new(device: &wgpu::Device) -> Self {
-        let corners = (0..QUADS_OF_A_DRAW).flat_map(|quad| [0, 1, 2, 2, 1, 3].map(|corner| (4 * quad + corner) as u16));
+        let corners =
+            (0..quads_of_a_draw(device)).flat_map(|quad| [0, 1, 2, 2, 1, 3].map(|corner| (4 * quad + corner) as u16));
         let bytes: Vec<u8> = corners.flat_map(u16::to_le_bytes).collect();
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("rain quad indices"),
@@ -36,11 +47,11 @@ impl QuadIndices {
 /// Arguments of one indexed draw.
 pub(crate) const DRAW_BYTES: u64 = 20;
 
-/// Arguments of `draws` draws for `quads` quads, as the shader that counts drops writes them.
-pub(crate) fn draw_words(quads: u32, draws: u32) -> impl Iterator<Item = u32> {
+/// Arguments of `draws` draws of `most` quads each for `quads` quads, as the shader that counts drops writes them.
+pub(crate) fn draw_words(quads: u32, draws: u32, most: u32) -> impl Iterator<Item = u32> {
     (0..draws).flat_map(move |draw| {
-        let first = QUADS_OF_A_DRAW * draw;
-        let some = (quads - first.min(quads)).min(QUADS_OF_A_DRAW);
+        let first = most * draw;
+        let some = (quads - first.min(quads)).min(most);
         [6 * some, 1, 0, 4 * first, 0]
     })
 }

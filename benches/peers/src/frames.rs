@@ -57,14 +57,14 @@ impl Frames {
             Kind::Rain | Kind::RainNearOnly => ours::add(&mut app, kind == Kind::RainNearOnly),
             Kind::Hanabi => hanabi::add(&mut app),
             Kind::Weather | Kind::WeatherOwn => weather::add(&mut app),
-            Kind::None | Kind::Quads => {}
+            Kind::None | Kind::NoneLit | Kind::Quads => {}
         }
-        let camera = scene::build(&mut app);
+        let camera = scene::build(&mut app, kind.is_lit());
         // The peers' quads are made as large as these.
         let (device, queue) = scene::device(&app);
         let ours_shown = |count| Field::new(&device, &queue, count).map(|field| field.shown);
         let (shown, drops) = match kind {
-            Kind::None | Kind::Quads => (Shown::default(), 0),
+            Kind::None | Kind::NoneLit | Kind::Quads => (Shown::default(), 0),
             Kind::Rain | Kind::RainNearOnly => ours::rain(&mut app, camera, count, kind == Kind::RainNearOnly)?,
             Kind::Hanabi => {
                 let shown = ours_shown(count)?;

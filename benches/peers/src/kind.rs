@@ -8,7 +8,9 @@ pub const MOST: u32 = 1_000_000;
 pub enum Kind {
     /// Nobody's.
     None,
-    /// Ours with all defaults: streaks, haze, splashes, wet surfaces.
+    /// Nobody's, and the scene is lit.
+    NoneLit,
+    /// Ours with all defaults: streaks, haze, splashes, wet surfaces; the scene is lit.
     Rain,
     /// Our streaks alone.
     RainNearOnly,
@@ -22,6 +24,14 @@ pub enum Kind {
     Quads,
 }
 
+impl Kind {
+    /// Whether the scene is lit. Where nothing but rain in the air is drawn it is not: the light takes ten times as long as
+    /// 10 000 drops, and what it varies by hides them.
+    pub fn is_lit(self) -> bool {
+        matches!(self, Self::NoneLit | Self::Rain)
+    }
+}
+
 /// The kind and the number of visible drops that the command line asks for.
 ///
 /// # Errors
@@ -32,6 +42,7 @@ pub fn read(words: &[String]) -> Result<(Kind, u32), String> {
     };
     let kind = match name.as_str() {
         "none" => Kind::None,
+        "none_lit" => Kind::NoneLit,
         "rain" => Kind::Rain,
         "rain_near_only" => Kind::RainNearOnly,
         "hanabi" => Kind::Hanabi,
@@ -44,7 +55,7 @@ pub fn read(words: &[String]) -> Result<(Kind, u32), String> {
         return Err(format!("{extra:?} is too much"));
     }
     let count = match (words.get(1), kind) {
-        (None, Kind::None) => 0,
+        (None, Kind::None | Kind::NoneLit) => 0,
         (None, _) => return Err("COUNT is missing".into()),
         (Some(word), _) => match word.parse::<u32>() {
             Ok(n) if (1..=MOST).contains(&n) => n,

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use kind::Kind;
 
 const USAGE: &str = "usage: peer_frames KIND [COUNT], for example: echo 12 | peer_frames rain_near_only 10000; KIND: none, \
-                     rain, rain_near_only, hanabi, weather, weather_own, quads; COUNT: visible drops, needed but for none; \
+                     none_lit, rain, rain_near_only, hanabi, weather, weather_own, quads; COUNT: visible drops, needed but for none and none_lit; \
                      stdin: numbers of frames, one a line";
 
 /// Most frames of a turn.

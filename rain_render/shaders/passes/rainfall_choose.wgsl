@@ -21,6 +21,8 @@
 // Whether the rain is uneven, and whether a container or a law of detail leaves drops out.
 override UNEVEN: bool = true;
 override THINNED: bool = true;
+// Quads of one draw.
+override QUADS_OF_A_DRAW: u32 = 16384u;
 
 // Invocations of a workgroup, and runs of a group: few, for what stands before a run is summed up run by run.
 const WORKGROUP: u32 = 64u;
@@ -317,10 +319,10 @@ fn scan(@builtin(local_invocation_index) local: u32) {
     arguments[7] = 0u;
     for (var i = 0u; i < 2u * choice.draws; i += 1u) {
         let of_near = i >= choice.draws;
-        let first = RAIN_QUADS_OF_A_DRAW * (i - select(0u, choice.draws, of_near));
+        let first = QUADS_OF_A_DRAW * (i - select(0u, choice.draws, of_near));
         let all = select(drops, near, of_near);
         let at = 8u + 5u * i;
-        arguments[at] = 6u * min(all - min(first, all), RAIN_QUADS_OF_A_DRAW);
+        arguments[at] = 6u * min(all - min(first, all), QUADS_OF_A_DRAW);
         arguments[at + 1u] = 1u;
         arguments[at + 2u] = 0u;
         arguments[at + 3u] = 4u * first;

@@ -16,7 +16,7 @@ use rain_core::rainfall::{
 use crate::bindings::{compute_pipeline_with, storage_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
-use crate::quad_indices::QUADS_OF_A_DRAW;
+use crate::quad_indices::quads_of_a_draw;
 
 /// Invocations of a workgroup, as the shader has it.
 const WORKGROUP: u32 = 64;
@@ -94,7 +94,11 @@ impl Choose {
         let key = self.serving(key);
         if let Some(slot) = self.pipelines.get(key.index()) {
             slot.get_or_init(|| {
-                let constants = [("UNEVEN", f64::from(key.uneven)), ("THINNED", f64::from(key.thinned))];
+                let constants = [
+                    ("UNEVEN", f64::from(key.uneven)),
+                    ("THINNED", f64::from(key.thinned)),
+                    ("QUADS_OF_A_DRAW", f64::from(quads_of_a_draw(device))),
+                ];
                 let pipeline = |entry: &str| {
                     let groups = [&self.layout];
                     compute_pipeline_with(device, "rain rainfall choose", &self.module, entry, &groups, &constants)
@@ -151,6 +155,8 @@ pub(super) struct Asked<'a> {
     pub cells: &'a ViewCells,
     /// No more drops are listed.
     pub most: u32,
+    /// Draws that they are divided into.
+    pub draws: u32,
     /// As [`super::near::near_reaches`] has them.
     pub near_reaches: [f32; CLASS_COUNT],
 }
@@ -361,12 +367,13 @@ fn uniform(asked: &Asked, stage: u32) -> RainfallChoice {
         choice,
         cells,
         most,
+        draws,
         near_reaches,
     } = *asked;
     let mut out = RainfallChoice {
         planes: choice.view.side_planes.map(|plane| Vec4::to_array(&plane)),
         most,
-        draws: most.div_ceil(QUADS_OF_A_DRAW),
+        draws,
         detail: match choice.detail {
             None => 0,
             Some(DetailLaw::OpticalDepth) => 1,

@@ -5,7 +5,7 @@ use rain_core::rainfall::DropRecord;
 use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::gpu_types::{RainfallView, Streak};
 use crate::overlay::{Overlay, OverlayKey};
-use crate::quad_indices::{DRAW_BYTES, QUADS_OF_A_DRAW, QuadIndices, draw_words};
+use crate::quad_indices::{DRAW_BYTES, QuadIndices, draw_words, quads_of_a_draw};
 use crate::rainfall::choose::{Asked, ChoiceGpu, ChoiceTargets, Choose};
 use crate::rainfall::near::near_reaches;
 use crate::rainfall::project::{Project, ProjectKey};
@@ -76,6 +76,8 @@ pub struct RainfallViewGpu {
     streaks: wgpu::Buffer,
     /// As many drops as the buffers hold.
     capacity: u32,
+    /// Quads of one draw.
+    of_a_draw: u32,
     pub(super) most: u32,
     pub(super) panes: u32,
     /// Streaks fade where they meet the scene.
@@ -185,6 +187,7 @@ impl RainfallViewGpu {
             near_list: buffer(device, "rain near drops", 4, storage),
             arguments: buffer(device, "rain drop draws", 4 * HEAD_WORDS, storage),
             capacity: 0,
+            of_a_draw: quads_of_a_draw(device),
             most: 0,
             panes: 0,
             soft: false,
@@ -210,7 +213,7 @@ impl RainfallViewGpu {
             self.arguments = buffer(
                 device,
                 "rain drop draws",
-                4 * HEAD_WORDS + 2 * DRAW_BYTES * u64::from(self.capacity.div_ceil(QUADS_OF_A_DRAW)),
+                4 * HEAD_WORDS + 2 * DRAW_BYTES * u64::from(self.capacity.div_ceil(self.of_a_draw)),
                 storage | wgpu::BufferUsages::INDIRECT,
             );
         }
@@ -221,7 +224,7 @@ impl RainfallViewGpu {
 
     /// Draws that the drops are divided into.
     pub(super) fn draws(&self) -> u32 {
-        self.most.div_ceil(QUADS_OF_A_DRAW)
+        self.most.div_ceil(self.of_a_draw)
     }
 
     /// Uploads a list of drops. Any of them may be near.
@@ -229,7 +232,8 @@ impl RainfallViewGpu {
         let drops = self.most;
         let near = if self.patterned { drops } else { 0 };
         let mut words = vec![drops, near, drops, 0, drops.div_ceil(64), 1, 1, 0];
-        words.extend(draw_words(drops, self.draws()).chain(draw_words(near, self.draws())));
+        let draws = |quads| draw_words(quads, self.draws(), self.of_a_draw);
+        words.extend(draws(drops).chain(draws(near)));
         queue.write_buffer(&self.arguments, 0, bytemuck::cast_slice(&words));
         if !records.is_empty() {
             queue.write_buffer(&self.records, 0, bytemuck::cast_slice(records));
@@ -275,6 +279,7 @@ impl RainfallViewGpu {
                     choice,
                     cells: &cells,
                     most: self.most,
+                    draws: self.draws(),
                     near_reaches: near_reaches(input, &placements),
                 };
                 let chooser = self.choice.get_or_insert_with(|| ChoiceGpu::new(device));
