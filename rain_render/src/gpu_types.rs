@@ -622,7 +622,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(SplashFoot: place, key),
         layout!(SpoutMouth: place, velocity, form, state, key),
         layout!(DropRecord: cell, drop),
-        layout!(Streak: ends, shape, light),
+        layout!(Streak: ends, shape, shares, light, gaps),
         layout!(LevelMapParams: corner, inverse_cell, base, cells, present, films),
         layout!(WaterLook: absorption, mud, ambient, ripples, waves, place, map, more_map),
         layout!(ReflectionParams: clip_from_eye, eye, plane),
