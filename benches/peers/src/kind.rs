@@ -25,8 +25,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether the scene is lit. Where nothing but rain in the air is drawn it is not: the light takes ten times as long as
-    /// 10 000 drops, and what it varies by hides them.
+    /// Whether the scene is lit. Where nothing but rain in the air is drawn it is not: the light takes several times as
+    /// long as 10 000 drops, and what it varies by hides them.
     pub fn is_lit(self) -> bool {
         matches!(self, Self::NoneLit | Self::Rain)
     }

@@ -7,6 +7,7 @@ mod examples;
 mod goldens;
 mod ground_masks;
 mod intensity;
+mod measured;
 mod moving;
 mod real_models;
 mod ron_bytes;
