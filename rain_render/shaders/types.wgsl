@@ -92,7 +92,8 @@ struct RainfallView {
     panes: u32,
     // 1: near streaks have a pattern.
     patterned: u32,
-    pad_a: u32,
+    // Share of the viewport that the view takes, each way.
+    guard_share: f32,
     pad_b: u32,
     pad_c: u32,
     cover: CoverParams,
@@ -103,7 +104,7 @@ struct RainfallView {
 
 // Cells of a class's lattice that may hold drops of a view.
 struct ChoiceClass {
-    // Lowest cell, from the eye's; w unused.
+    // Lowest cell, from the eye's; w: how many rows of cells along the first axis all classes before have.
     low: vec4<i32>,
     // Cells along each axis; w: neighbours along the first that are looked through together, a run, at most 16.
     side: vec4<u32>,
@@ -112,13 +113,15 @@ struct ChoiceClass {
     runs: vec4<u32>,
     // No drop has a rank above x, all up to y are there wholly; z: threshold at a diameter of 0, w: slope of its ln, 1/mm.
     ranks: vec4<f32>,
-    // Reach of the largest drops and of the smallest, of a streak, and of what may have a pattern, m.
+    // Reach of the largest drops, of the smallest, and of what may have a pattern, m; w unused.
     reach: vec4<f32>,
+    // Offsets of the side planes, moved out for streaks that reach in over them, m.
+    out: vec4<f32>,
 }
 
 // What the drops of a view are chosen from.
 struct RainfallChoice {
-    // Side planes through the eye: inward normals, and how far what is outside still counts.
+    // Inward normals of the view's side planes; w unused: their offsets are the classes'.
     planes: array<vec4<f32>, 4>,
     // Container that follows the view. Half its width, half its height, how far ahead, and 0 none, 1 half a cylinder, 2 a block.
     region: vec4<f32>,
@@ -145,6 +148,11 @@ struct RainfallChoice {
     kappa: f32,
     focal: f32,
     exposure: f32,
+    // Rows of cells of all classes.
+    rows: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
     classes: array<ChoiceClass, 12>,
 }
 

@@ -73,7 +73,7 @@ pub struct RainfallView {
     pub lamps: u32,
     pub panes: u32,
     pub patterned: u32,
-    pub pad_a: u32,
+    pub guard_share: f32,
     pub pad_b: u32,
     pub pad_c: u32,
     pub cover: CoverParams,
@@ -91,6 +91,7 @@ pub struct ChoiceClass {
     pub runs: [u32; 4],
     pub ranks: [f32; 4],
     pub reach: [f32; 4],
+    pub out: [f32; 4],
 }
 
 /// What the drops of a view are chosen from.
@@ -112,6 +113,10 @@ pub struct RainfallChoice {
     pub kappa: f32,
     pub focal: f32,
     pub exposure: f32,
+    pub rows: u32,
+    pub pad_a: u32,
+    pub pad_b: u32,
+    pub pad_c: u32,
     pub classes: [ChoiceClass; CLASS_COUNT],
 }
 
@@ -613,11 +618,11 @@ pub fn layouts() -> Vec<Layout> {
         layout!(CoverParams: centre, wind, inverse_extent, top, range, highest, plane, inverse_speed, texels, present),
         layout!(RainfallClass: cell, fraction, velocity, stream, diameter),
         layout!(RainfallView: clip_from_eye, clip_from_eye_before, environment, ambient, sun_direction, sun, lead, size,
-            viewport, focal, near, exposure, contrast, kappa, soft, lamps, panes, patterned, pad_a, pad_b, pad_c,
+            viewport, focal, near, exposure, contrast, kappa, soft, lamps, panes, patterned, guard_share, pad_b, pad_c,
             cover, classes, lamp, pane),
-        layout!(ChoiceClass: low, side, runs, ranks, reach),
+        layout!(ChoiceClass: low, side, runs, ranks, reach, out),
         layout!(RainfallChoice: planes, region, region_place, lead, along, region_turn, ladder, runs, groups, most, draws, detail, kappa,
-            focal, exposure, classes),
+            focal, exposure, rows, pad_a, pad_b, pad_c, classes),
         layout!(GlassPane: along, up, across),
         layout!(SplashFoot: place, key),
         layout!(SpoutMouth: place, velocity, form, state, key),

@@ -11,6 +11,7 @@ pub mod cover;
 pub mod far_rain;
 pub mod glass;
 pub mod gpu_types;
+mod guard_band;
 pub mod haze;
 mod lamps;
 pub mod lattice;

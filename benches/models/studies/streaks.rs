@@ -116,6 +116,7 @@ fn volume() -> RainViewVolume {
         focal_px: 623.5,
         solid_angle_sr: 1.7,
         exposure_s: 1.0 / 60.0,
+        turn_rad: 0.0,
     }
 }
 

@@ -8,7 +8,7 @@ use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
 use rain_core::rainfall::{
     Container, DetailLaw, DropChoice, FADE_END, Follow, FollowSettings, LEAD_CAP_M, RANGE_CAP_M, RainViewVolume,
-    RateLadder, UnevenRain, expected_drops, quality_for_budget,
+    RateLadder, Spectrum, UnevenRain, expected_drops, quality_for_budget,
 };
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
@@ -154,10 +154,23 @@ impl RainView {
 #[derive(Clone, Copy, Debug)]
 struct Quality {
     kappa: f64,
+    /// What it is going to be, and for what.
+    target: f64,
+    of: QualityOf,
     /// When. Units: s.
     set_s: f64,
     /// Of the picture.
     size_px: UVec2,
+}
+
+/// What the quality that a budget allows depends on: in a view that only moves through steady rain it stays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct QualityOf {
+    spectrum: Spectrum,
+    focal_px: f64,
+    solid_angle_sr: f64,
+    exposure_s: f64,
+    budget: u32,
 }
 
 /// What a view draws this frame; extracted to the render world.
@@ -327,7 +340,17 @@ pub(crate) fn choose_drops(
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, &motion, settings.exposure_s);
         let budget = settings.budget(*software);
-        let target = quality_for_budget(&spectrum, &volume, f64::from(budget)).max(1e-6);
+        let of = QualityOf {
+            spectrum,
+            focal_px: volume.focal_px,
+            solid_angle_sr: volume.solid_angle_sr,
+            exposure_s: volume.exposure_s,
+            budget,
+        };
+        let target = match frame.quality {
+            Some(quality) if quality.of == of => quality.target,
+            _ => quality_for_budget(&spectrum, &volume, f64::from(budget)).max(1e-6),
+        };
         let kappa = match frame.quality {
             // Low-passed while the view runs; at once after a pause or in a picture of another size, when nobody sees the jump.
             Some(quality) if (0.0..0.5).contains(&(now - quality.set_s)) && quality.size_px == size => {
@@ -338,6 +361,8 @@ pub(crate) fn choose_drops(
         };
         frame.quality = Some(Quality {
             kappa,
+            target,
+            of,
             set_s: now,
             size_px: size,
         });
@@ -437,5 +462,6 @@ pub(crate) fn view_volume(
         focal_px: f64::from(0.5 * size.y as f32 * sy),
         solid_angle_sr: 4.0 * libm::asin(ratio.min(1.0)),
         exposure_s: f64::from(exposure_s),
+        turn_rad: f64::from(motion.turn_rad_s.length() * exposure_s),
     }
 }

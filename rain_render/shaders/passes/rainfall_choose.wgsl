@@ -1,11 +1,11 @@
-// Which drops a view draws singly: those in the cells of all lattices about it are counted, then listed in the order of the
-// cells, so that the list is the same each time.
+// Which drops a view draws singly: runs of cells about it that reach into the view are noted, their drops counted, then listed
+// in the order of the cells, so that the list is the same each time.
 
 @group(0) @binding(0) var<uniform> view: RainfallView;
 @group(0) @binding(1) var<uniform> choice: RainfallChoice;
-// Drops of each run of cells in the lower half of a word, how many of them may have a pattern in the upper.
+// Drops of each run of cells in the lower half of a word; above: MAY_HAVE_PATTERN, NOT_STAGED.
 @group(0) @binding(2) var<storage, read_write> counts: array<u32>;
-// Those of each group of runs, then those of all groups before.
+// Those of each group of runs, and how many of them may have a pattern; then those of all groups before.
 @group(0) @binding(3) var<storage, read_write> sums: array<vec2<u32>>;
 // See `RainfallArguments` in rain_render.
 @group(0) @binding(4) var<storage, read_write> arguments: array<u32>;
@@ -17,10 +17,14 @@
 @group(0) @binding(7) var<storage, read> areas: array<vec4<f32>>;
 // ln of the threshold at a diameter of 0, and its slope, by class and rate.
 @group(0) @binding(8) var<storage, read> ladder: array<vec2<f32>>;
+// Runs that reach into the view, from word 4 on, in any order. Before: how many, and what is dispatched for them.
+@group(0) @binding(10) var<storage, read_write> noting: array<atomic<u32>>;
+@group(0) @binding(11) var<storage, read> noted: array<u32>;
 
-// Whether the rain is uneven, and whether a container or a law of detail leaves drops out.
+// Whether the rain is uneven, whether a container or a law of detail leaves drops out, and whether near drops have patterns.
 override UNEVEN: bool = true;
 override THINNED: bool = true;
+override PATTERNED: bool = true;
 // Quads of one draw.
 override QUADS_OF_A_DRAW: u32 = 16384u;
 
@@ -29,6 +33,13 @@ const WORKGROUP: u32 = 64u;
 const GROUP: u32 = 16u;
 // Share over which a drop fades that a law is about to leave out, of the law's number.
 const FADE: f32 = 0.1;
+// Any drop of the run may have a pattern.
+const MAY_HAVE_PATTERN: u32 = 0x10000u;
+// There are more drops than there is room for on the stage. The same of a group of runs.
+const NOT_STAGED: u32 = 0x20000u;
+const GROUP_NOT_STAGED: u32 = 0x80000000u;
+// Where the list of noted runs begins.
+const NOTED: u32 = 4u;
 // Workgroups are counted in rows of this many.
 const ROW: u32 = 32768u;
 
@@ -109,7 +120,7 @@ fn detail_weight(distance: f32, mark: f32) -> f32 {
     return clamp((share * (1.0 + 0.5 * FADE) - mark) / (share * FADE), 0.0, 1.0);
 }
 
-// What all drops are held against, read once.
+// What the drops of a class are held against, read once.
 struct Bounds {
     // The side planes, (normal, offset), m.
     a: vec4<f32>,
@@ -121,9 +132,15 @@ struct Bounds {
     along: vec3<f32>,
 }
 
-fn bounds_of_view() -> Bounds {
-    let planes = choice.planes;
-    return Bounds(planes[0], planes[1], planes[2], planes[3], choice.lead.xyz, choice.along.xyz);
+fn bounds_of(out: vec4<f32>) -> Bounds {
+    return Bounds(
+        vec4<f32>(choice.planes[0].xyz, out.x),
+        vec4<f32>(choice.planes[1].xyz, out.y),
+        vec4<f32>(choice.planes[2].xyz, out.z),
+        vec4<f32>(choice.planes[3].xyz, out.w),
+        choice.lead.xyz,
+        choice.along.xyz,
+    );
 }
 
 // Least distance of a place from the side planes, above 0 inside.
@@ -139,13 +156,13 @@ fn over(plane: vec4<f32>, centre: vec3<f32>, half: f32) -> f32 {
     return dot(plane.xyz, centre) + plane.w + half * dot(abs(plane.xyz), vec3<f32>(1.0));
 }
 
-// Whether anything of a cube lies inside, with room for what reaches in from a margin.
-fn touches(bounds: Bounds, centre: vec3<f32>, half: f32, margin: f32) -> bool {
+// Whether anything of a cube lies inside.
+fn touches(bounds: Bounds, centre: vec3<f32>, half: f32) -> bool {
     let depth = min(
         min(over(bounds.a, centre, half), over(bounds.b, centre, half)),
         min(over(bounds.c, centre, half), over(bounds.d, centre, half)),
     );
-    return depth >= -margin - 0.01;
+    return depth >= 0.0;
 }
 
 // Square of the distance from a place to the segment from the eye to the lead.
@@ -178,6 +195,15 @@ fn run_at(index: u32) -> Run {
     return Run(k, of_class, choice.classes[k].low.xyz + vec3<i32>(place), min(side.w, side.x - first));
 }
 
+// Whether anything of a cube with this corner reaches into the view; `reach`: how far from the lead.
+fn shows(bounds: Bounds, corner: vec3<f32>, edge: f32, reach: f32) -> bool {
+    let half = 0.5 * edge;
+    let centre = corner + half;
+    let from_eye = length(clamp(vec3<f32>(0.0), corner, corner + edge));
+    let nearest = select(from_eye, sqrt(from_lead_squared(bounds, centre)) - half * sqrt(3.0), choice.along.w > 0.0);
+    return nearest <= reach && touches(bounds, centre, half);
+}
+
 // Lists a drop, if it is not beyond the limit. `word`: its cell in the run, then as in `DropRecord::drop`.
 fn enlist(run: Run, word: u32, patterned: bool, at: vec2<u32>) {
     let drawn = at.x < choice.most;
@@ -185,32 +211,27 @@ fn enlist(run: Run, word: u32, patterned: bool, at: vec2<u32>) {
         let biased = vec3<u32>(run.place + 512) + vec3<u32>(word & 15u, 0u, 0u);
         records[at.x] = DropRecord(biased.x | (biased.y << 10u) | (biased.z << 20u), (word & ~15u) | run.k);
     }
-    if (patterned && at.y < choice.most) {
+    if (PATTERNED && patterned && at.y < choice.most) {
         listed[at.y] = select(RAIN_NO_DROP, at.x, drawn);
     }
 }
 
-// Finds the drops of a run that the view draws, and how many of them may have a pattern: all or none. They are staged, or
-// with `enlisting` listed from `start` on.
-fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
-    let bounds = bounds_of_view();
+// Finds the drops of a run that the view draws, as a word of `counts`. They are staged, or with `enlisting` listed from
+// `start` on.
+fn find(run: Run, enlisting: bool, start: vec2<u32>) -> u32 {
     let own = choice.classes[run.k];
+    let bounds = bounds_of(own.out);
     let placed = view.classes[run.k];
     let edge = placed.fraction.w;
-    let half = 0.5 * edge;
     let first = (vec3<f32>(run.place) - placed.fraction.xyz) * edge;
     let last = first + edge * vec3<f32>(f32(run.cells), 1.0, 1.0);
-    let patterned = length(clamp(vec3<f32>(0.0), first, last)) < own.reach.w;
-    let margin = own.reach.z;
+    let patterned = PATTERNED && length(clamp(vec3<f32>(0.0), first, last)) < own.reach.z;
     let furthest = own.reach.x * own.reach.x;
     let whole = own.reach.y * own.reach.y;
     var found = 0u;
     for (var c = 0u; c < run.cells; c += 1u) {
         let corner = first + vec3<f32>(edge * f32(c), 0.0, 0.0);
-        let centre = corner + half;
-        let from_eye = length(clamp(vec3<f32>(0.0), corner, corner + edge));
-        let nearest = select(from_eye, sqrt(from_lead_squared(bounds, centre)) - half * sqrt(3.0), choice.along.w > 0.0);
-        if (nearest > own.reach.x || !touches(bounds, centre, half, margin)) {
+        if (run.cells > 1u && !shows(bounds, corner, edge, own.reach.x)) {
             continue;
         }
         let key = rain_cell_key(placed.stream.xyz, placed.cell.xyz + run.place + vec3<i32>(i32(c), 0, 0));
@@ -223,7 +244,7 @@ fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
             }
             let place = corner + rain_drop_place(key, i) * edge;
             let square = from_lead_squared(bounds, place);
-            if (square > furthest || depth_inside(bounds, place) < -(margin + 0.01)) {
+            if (square > furthest || depth_inside(bounds, place) < 0.0) {
                 continue;
             }
             var presence = 1.0;
@@ -248,23 +269,68 @@ fn find(run: Run, enlisting: bool, start: vec2<u32>) -> vec2<u32> {
             found += 1u;
         }
     }
-    return vec2<u32>(found, select(0u, found, patterned));
+    let more = select(0u, NOT_STAGED, found > own.runs.z);
+    return select(0u, found | select(0u, MAY_HAVE_PATTERN, patterned) | more, found > 0u);
 }
 
 fn numbered(group: vec3<u32>, local: u32) -> u32 {
     return (group.y * ROW + group.x) * WORKGROUP + local;
 }
 
-fn count_of(index: u32) -> vec2<u32> {
-    return vec2<u32>(counts[index] & 0xFFFFu, counts[index] >> 16u);
+// Drops of a run, and how many of them may have a pattern: all or none.
+fn count_of(word: u32) -> vec2<u32> {
+    let drops = word & 0xFFFFu;
+    return vec2<u32>(drops, select(0u, drops, (word & MAY_HAVE_PATTERN) != 0u));
+}
+
+@compute @workgroup_size(1)
+fn begin() {
+    atomicStore(&noting[0], 0u);
+    atomicStore(&noting[1], 0u);
+    atomicStore(&noting[2], 1u);
+    atomicStore(&noting[3], 1u);
+}
+
+// Two out of three runs have no cell in the view: counting goes through the others only. One invocation a row of cells.
+@compute @workgroup_size(64)
+fn note(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let row = numbered(group, local);
+    if (row >= choice.rows) {
+        return;
+    }
+    var k = 0u;
+    for (var i = 1u; i < 12u; i += 1u) {
+        k = select(k, i, row >= u32(choice.classes[i].low.w));
+    }
+    let own = choice.classes[k];
+    let bounds = bounds_of(own.out);
+    let placed = view.classes[k];
+    let edge = placed.fraction.w;
+    let of_class = row - u32(own.low.w);
+    let place = own.low.xyz + vec3<i32>(0, i32(of_class % own.side.y), i32(of_class / own.side.y));
+    let first = (vec3<f32>(place) - placed.fraction.xyz) * edge;
+    let runs = (own.side.x + own.side.w - 1u) / own.side.w;
+    let index = own.runs.x + of_class * runs;
+    for (var run = 0u; run < runs; run += 1u) {
+        var any = false;
+        for (var c = run * own.side.w; c < min((run + 1u) * own.side.w, own.side.x); c += 1u) {
+            any = any || shows(bounds, first + vec3<f32>(edge * f32(c), 0.0, 0.0), edge, own.reach.x);
+        }
+        if (any) {
+            let slot = atomicAdd(&noting[0], 1u);
+            atomicMax(&noting[1], slot / WORKGROUP + 1u);
+            atomicStore(&noting[NOTED + slot], index + run);
+        } else {
+            counts[index + run] = 0u;
+        }
+    }
 }
 
 @compute @workgroup_size(64)
-fn count(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let index = numbered(group, local);
-    if (index < choice.runs) {
-        let found = find(run_at(index), false, vec2<u32>(0u));
-        counts[index] = found.x | (found.y << 16u);
+fn count(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x < noted[0]) {
+        let index = noted[NOTED + id.x];
+        counts[index] = find(run_at(index), false, vec2<u32>(0u));
     }
 }
 
@@ -275,36 +341,42 @@ fn sum(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index)
         return;
     }
     var all = vec2<u32>(0u);
+    var words = 0u;
     for (var index = g * GROUP; index < min((g + 1u) * GROUP, choice.runs); index += 1u) {
-        all += count_of(index);
+        all += count_of(counts[index]);
+        words |= counts[index];
     }
-    sums[g] = all;
+    sums[g] = vec2<u32>(all.x, all.y | select(0u, GROUP_NOT_STAGED, (words & NOT_STAGED) != 0u));
 }
 
-var<workgroup> parts: array<vec2<u32>, 256>;
+var<workgroup> parts: array<vec2<u32>, WORKGROUP>;
+var<workgroup> not_staged: atomic<u32>;
 
 // How many drops there are before each group, and what is dispatched and drawn for all of them.
-@compute @workgroup_size(256)
+@compute @workgroup_size(64)
 fn scan(@builtin(local_invocation_index) local: u32) {
-    let each = (choice.groups + 255u) / 256u;
+    let each = (choice.groups + WORKGROUP - 1u) / WORKGROUP;
     let low = min(local * each, choice.groups);
     let high = min(low + each, choice.groups);
     var part = vec2<u32>(0u);
+    var words = 0u;
     for (var g = low; g < high; g += 1u) {
-        part += sums[g];
+        part += vec2<u32>(sums[g].x, sums[g].y & ~GROUP_NOT_STAGED);
+        words |= sums[g].y;
     }
     parts[local] = part;
+    atomicOr(&not_staged, words & GROUP_NOT_STAGED);
     workgroupBarrier();
     var before = vec2<u32>(0u);
     for (var i = 0u; i < local; i += 1u) {
         before += parts[i];
     }
     for (var g = low; g < high; g += 1u) {
-        let own = sums[g];
+        let own = vec2<u32>(sums[g].x, sums[g].y & ~GROUP_NOT_STAGED);
         sums[g] = before;
         before += own;
     }
-    if (local < 255u) {
+    if (local < WORKGROUP - 1u) {
         return;
     }
     let drops = min(before.x, choice.most);
@@ -317,11 +389,16 @@ fn scan(@builtin(local_invocation_index) local: u32) {
     arguments[5] = 1u;
     arguments[6] = 1u;
     arguments[7] = 0u;
+    let again = select(0u, (choice.runs + WORKGROUP - 1u) / WORKGROUP, atomicLoad(&not_staged) != 0u);
+    arguments[8] = min(again, ROW);
+    arguments[9] = (again + ROW - 1u) / ROW;
+    arguments[10] = 1u;
+    arguments[11] = 0u;
     for (var i = 0u; i < 2u * choice.draws; i += 1u) {
         let of_near = i >= choice.draws;
         let first = QUADS_OF_A_DRAW * (i - select(0u, choice.draws, of_near));
         let all = select(drops, near, of_near);
-        let at = 8u + 5u * i;
+        let at = 12u + 5u * i;
         arguments[at] = 6u * min(all - min(first, all), QUADS_OF_A_DRAW);
         arguments[at + 1u] = 1u;
         arguments[at + 2u] = 0u;
@@ -330,25 +407,38 @@ fn scan(@builtin(local_invocation_index) local: u32) {
     }
 }
 
-@compute @workgroup_size(64)
-fn list(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let index = numbered(group, local);
-    if (index >= choice.runs || counts[index] == 0u) {
-        return;
-    }
+// Where the drops of a run begin in the list.
+fn start_of(index: u32) -> vec2<u32> {
     var start = sums[index / GROUP];
     for (var before = index - index % GROUP; before < index; before += 1u) {
-        start += count_of(before);
+        start += count_of(counts[before]);
     }
-    let found = count_of(index);
-    let run = run_at(index);
-    let stage = choice.classes[run.k].runs;
-    if (found.x > stage.z) {
-        // More than are staged.
-        _ = find(run, true, start);
+    return start;
+}
+
+@compute @workgroup_size(64)
+fn list(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x >= noted[0]) {
         return;
     }
+    let index = noted[NOTED + id.x];
+    if (counts[index] == 0u || (counts[index] & NOT_STAGED) != 0u) {
+        return;
+    }
+    let start = start_of(index);
+    let found = count_of(counts[index]);
+    let run = run_at(index);
+    let stage = choice.classes[run.k].runs;
     for (var i = 0u; i < found.x; i += 1u) {
         enlist(run, staged[stage.w + i * stage.y + run.of_class], found.y > 0u, start + i);
+    }
+}
+
+// Looks through the runs again that have more drops than were staged.
+@compute @workgroup_size(64)
+fn list_again(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let index = numbered(group, local);
+    if (index < choice.runs && (counts[index] & NOT_STAGED) != 0u) {
+        _ = find(run_at(index), true, start_of(index));
     }
 }

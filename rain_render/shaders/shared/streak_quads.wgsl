@@ -15,10 +15,10 @@ struct StreakVertex {
     @location(3) @interpolate(flat) coverage: f32,
 }
 
-// A corner of no quad.
+// A corner of no quad: all lie in one place. (Outside the picture they would have to be clipped.)
 fn no_corner() -> StreakVertex {
     var out: StreakVertex;
-    out.position = vec4<f32>(0.0, 0.0, -1.0, 1.0);
+    out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
     return out;
 }
 
@@ -29,7 +29,7 @@ fn has_pattern(half: f32) -> bool {
 
 // Where a place in the picture of this view is drawn.
 fn ndc_of(pixel: vec2<f32>) -> vec2<f32> {
-    return (pixel / view.viewport.zw - 0.5) * vec2<f32>(2.0, -2.0);
+    return (pixel / view.viewport.zw - 0.5) * vec2<f32>(2.0, -2.0) * view.guard_share;
 }
 
 // A corner of the quad of a streak, `reach` times as wide as it is and as much longer.

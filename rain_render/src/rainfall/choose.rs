@@ -1,6 +1,8 @@
 //! Choosing the drops of a view on the GPU: nothing that grows with their number goes up or comes back.
 //!
-//! Runs of neighbouring cells are counted, counts summed up, and drops listed in the order of their cells, so that the list is the same each time.
+//! Runs of neighbouring cells that reach into the view are noted, their drops counted and staged, counts summed up, and drops
+//! listed in the order of their cells, so that the list is the same each time. A run with more drops than its part of the stage
+//! holds is looked through again.
 //! A software device runs masked-off code too: there uneven rain and what thins it are in the pipelines of views that have
 //! them only. A GPU has one set, so that the first shower makes no frame wait.
 
@@ -17,6 +19,7 @@ use crate::bindings::{compute_pipeline_with, storage_entry, uniform_entry};
 use crate::compose;
 use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
 use crate::quad_indices::quads_of_a_draw;
+use crate::rainfall::prepare::AGAIN_WORD;
 
 /// Invocations of a workgroup, as the shader has it.
 const WORKGROUP: u32 = 64;
@@ -32,50 +35,77 @@ const ROW: u32 = 32_768;
 struct ChoiceKey {
     uneven: bool,
     thinned: bool,
+    patterned: bool,
 }
 
 impl ChoiceKey {
     const EVERYTHING: Self = Self {
         uneven: true,
         thinned: true,
+        patterned: true,
     };
 
     fn index(self) -> usize {
-        usize::from(self.uneven) + 2 * usize::from(self.thinned)
+        usize::from(self.uneven) + 2 * usize::from(self.thinned) + 4 * usize::from(self.patterned)
     }
 }
 
 #[derive(Debug)]
 struct Pipelines {
+    begin: wgpu::ComputePipeline,
+    note: wgpu::ComputePipeline,
     count: wgpu::ComputePipeline,
     sum: wgpu::ComputePipeline,
     scan: wgpu::ComputePipeline,
     list: wgpu::ComputePipeline,
+    list_again: wgpu::ComputePipeline,
 }
 
-/// The layout and the pipelines.
+/// Bindings of what notes and sums up; of what counts and lists: these are dispatched by what the others write.
+const SUMMING: [(u32, bool); 4] = [(2, false), (3, false), (4, false), (10, false)];
+const FINDING: [(u32, bool); 8] = [
+    (2, false),
+    (3, false),
+    (5, false),
+    (6, false),
+    (7, true),
+    (8, true),
+    (9, false),
+    (11, true),
+];
+
+/// The layouts and the pipelines.
 #[derive(Debug)]
 pub(super) struct Choose {
-    layout: wgpu::BindGroupLayout,
+    summing: wgpu::BindGroupLayout,
+    finding: wgpu::BindGroupLayout,
     module: wgpu::ShaderModule,
     /// Views have pipelines of their own.
     apart: bool,
-    pipelines: [OnceLock<Pipelines>; 4],
+    pipelines: [OnceLock<Pipelines>; 8],
 }
 
 impl Choose {
     pub fn new(device: &wgpu::Device) -> Self {
         let compute = wgpu::ShaderStages::COMPUTE;
-        let mut entries = vec![
-            uniform_entry(0, compute, size_of::<RainfallView>()),
-            uniform_entry(1, compute, size_of::<RainfallChoice>()),
-        ];
-        entries.extend((2..=9).map(|binding| storage_entry(binding, compute, binding == 7 || binding == 8)));
-        let choose = Self {
-            layout: device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        let layout = |buffers: &[(u32, bool)]| {
+            let mut entries = vec![
+                uniform_entry(0, compute, size_of::<RainfallView>()),
+                uniform_entry(1, compute, size_of::<RainfallChoice>()),
+            ];
+            entries.extend(
+                buffers
+                    .iter()
+                    .map(|(binding, read_only)| storage_entry(*binding, compute, *read_only)),
+            );
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("rain rainfall choose"),
                 entries: &entries,
-            }),
+            })
+        };
+        let choose = Self {
+            summing: layout(&SUMMING),
+            finding: layout(&FINDING),
             module: compose::shader(device, "rainfall_choose"),
             apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
             pipelines: Default::default(),
@@ -97,17 +127,27 @@ impl Choose {
                 let constants = [
                     ("UNEVEN", f64::from(key.uneven)),
                     ("THINNED", f64::from(key.thinned)),
+                    ("PATTERNED", f64::from(key.patterned)),
                     ("QUADS_OF_A_DRAW", f64::from(quads_of_a_draw(device))),
                 ];
-                let pipeline = |entry: &str| {
-                    let groups = [&self.layout];
-                    compute_pipeline_with(device, "rain rainfall choose", &self.module, entry, &groups, &constants)
+                let pipeline = |entry: &str, layout: &wgpu::BindGroupLayout| {
+                    compute_pipeline_with(
+                        device,
+                        "rain rainfall choose",
+                        &self.module,
+                        entry,
+                        &[layout],
+                        &constants,
+                    )
                 };
                 Pipelines {
-                    count: pipeline("count"),
-                    sum: pipeline("sum"),
-                    scan: pipeline("scan"),
-                    list: pipeline("list"),
+                    begin: pipeline("begin", &self.summing),
+                    note: pipeline("note", &self.summing),
+                    count: pipeline("count", &self.finding),
+                    sum: pipeline("sum", &self.summing),
+                    scan: pipeline("scan", &self.summing),
+                    list: pipeline("list", &self.finding),
+                    list_again: pipeline("list_again", &self.finding),
                 }
             });
         }
@@ -120,15 +160,23 @@ pub(super) struct ChoiceGpu {
     uniform: wgpu::Buffer,
     counts: wgpu::Buffer,
     sums: wgpu::Buffer,
+    noted: wgpu::Buffer,
     areas: wgpu::Buffer,
     ladder: wgpu::Buffer,
     /// What the ladder's buffer holds.
     ladder_of: Option<std::sync::Arc<RateLadder>>,
     packed: AreaFieldF32,
     key: ChoiceKey,
-    runs: u32,
+    rows: u32,
     groups: u32,
-    bind_group: Option<wgpu::BindGroup>,
+    bind_groups: Option<BindGroups>,
+}
+
+#[derive(Debug)]
+struct BindGroups {
+    summing: wgpu::BindGroup,
+    finding: wgpu::BindGroup,
+    of: [wgpu::Buffer; 12],
 }
 
 fn storage(device: &wgpu::Device, label: &str, bytes: u64) -> wgpu::Buffer {
@@ -136,6 +184,19 @@ fn storage(device: &wgpu::Device, label: &str, bytes: u64) -> wgpu::Buffer {
         label: Some(label),
         size: bytes.max(16),
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+/// Words before the list of noted runs: how many there are, and the workgroups for them.
+const NOTED: u64 = 4;
+
+/// Room for a list of `runs` runs.
+fn noted(device: &wgpu::Device, runs: u32) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("rain runs of cells in view"),
+        size: 4 * (NOTED + u64::from(runs)),
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
         mapped_at_creation: false,
     })
 }
@@ -182,14 +243,15 @@ impl ChoiceGpu {
             }),
             counts: storage(device, "rain drop counts", 4096),
             sums: storage(device, "rain drop sums", 512),
+            noted: noted(device, 1024),
             areas: storage(device, "rain areas of drops", 16),
             ladder: storage(device, "rain ladder of rates", 16),
             ladder_of: None,
             packed: AreaFieldF32::default(),
             key: ChoiceKey::default(),
-            runs: 0,
+            rows: 0,
             groups: 0,
-            bind_group: None,
+            bind_groups: None,
         }
     }
 
@@ -206,11 +268,12 @@ impl ChoiceGpu {
         self.key = ChoiceKey {
             uneven: choice.uneven.is_some(),
             thinned: choice.region.is_some() || choice.detail.is_some(),
+            patterned: asked.near_reaches.iter().any(|reach| *reach > 0.0),
         };
         choose.prepare(device, self.key);
         let stage = u32::try_from(targets.stage.size() / 4).unwrap_or(u32::MAX);
         let uniform = uniform(asked, stage);
-        (self.runs, self.groups) = (uniform.runs, uniform.groups);
+        (self.rows, self.groups) = (uniform.rows, uniform.groups);
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
         grow(
             device,
@@ -219,33 +282,57 @@ impl ChoiceGpu {
             4 * u64::from(uniform.runs),
         );
         grow(device, &mut self.sums, "rain drop sums", 8 * u64::from(uniform.groups));
+        if self.noted.size() < 4 * (NOTED + u64::from(uniform.runs)) {
+            self.noted = noted(device, uniform.runs + uniform.runs / 4);
+        }
         let mut whole = true;
         if let Some(rain) = &choice.uneven {
             whole = self.prepare_uneven(device, queue, choice, rain);
         }
-        let entry = |binding, buffer: &wgpu::Buffer| (binding, buffer.clone());
-        let buffers = [
-            entry(0, targets.view),
-            entry(1, &self.uniform),
-            entry(2, &self.counts),
-            entry(3, &self.sums),
-            entry(4, targets.arguments),
-            entry(5, targets.records),
-            entry(6, targets.near),
-            entry(7, &self.areas),
-            entry(8, &self.ladder),
-            entry(9, targets.stage),
-        ];
-        let entries = buffers.each_ref().map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding: *binding,
-            resource: buffer.as_entire_binding(),
-        });
-        self.bind_group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("rain rainfall choose"),
-            layout: &choose.layout,
-            entries: &entries,
-        }));
+        self.bind(device, choose, targets);
         whole
+    }
+
+    /// Binds what it reads and writes, unless that is bound already.
+    fn bind(&mut self, device: &wgpu::Device, choose: &Choose, targets: &ChoiceTargets) {
+        // By binding.
+        let buffers = [
+            targets.view,
+            &self.uniform,
+            &self.counts,
+            &self.sums,
+            targets.arguments,
+            targets.records,
+            targets.near,
+            &self.areas,
+            &self.ladder,
+            targets.stage,
+            &self.noted,
+            &self.noted,
+        ]
+        .map(Clone::clone);
+        if self.bind_groups.as_ref().is_some_and(|groups| groups.of == buffers) {
+            return;
+        }
+        let group = |layout, bindings: &[(u32, bool)]| {
+            let bindings = [0, 1].into_iter().chain(bindings.iter().map(|(binding, _)| *binding));
+            let entries: Vec<_> = bindings
+                .map(|binding| wgpu::BindGroupEntry {
+                    binding,
+                    resource: buffers[binding as usize].as_entire_binding(),
+                })
+                .collect();
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("rain rainfall choose"),
+                layout,
+                entries: &entries,
+            })
+        };
+        self.bind_groups = Some(BindGroups {
+            summing: group(&choose.summing, &SUMMING),
+            finding: group(&choose.finding, &FINDING),
+            of: buffers,
+        });
     }
 
     fn prepare_uneven(
@@ -282,31 +369,42 @@ impl ChoiceGpu {
         whole
     }
 
-    /// Chooses.
-    pub fn encode(&self, pass: &mut wgpu::ComputePass, choose: &Choose) {
+    /// Chooses. `arguments`: those that it was prepared with.
+    pub fn encode(&self, pass: &mut wgpu::ComputePass, choose: &Choose, arguments: &wgpu::Buffer) {
         let slot = choose.pipelines.get(choose.serving(self.key).index());
-        let (Some(pipelines), Some(bind_group)) = (slot.and_then(OnceLock::get), &self.bind_group) else {
+        let (Some(pipelines), Some(groups)) = (slot.and_then(OnceLock::get), &self.bind_groups) else {
             return;
         };
-        let rows = |invocations: u32| {
+        let dispatch = |pass: &mut wgpu::ComputePass, pipeline, group, invocations: u32| {
             let groups = invocations.div_ceil(WORKGROUP);
-            (groups.min(ROW), groups.div_ceil(ROW))
-        };
-        pass.set_bind_group(0, bind_group, &[]);
-        for (pipeline, (x, y)) in [
-            (&pipelines.count, rows(self.runs)),
-            (&pipelines.sum, rows(self.groups)),
-            (&pipelines.scan, (1, 1)),
-            (&pipelines.list, rows(self.runs)),
-        ] {
             pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(x, y, 1);
-        }
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
+        };
+        let indirect = |pass: &mut wgpu::ComputePass, pipeline, buffer, word: u64| {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &groups.finding, &[]);
+            pass.dispatch_workgroups_indirect(buffer, 4 * word);
+        };
+        dispatch(pass, &pipelines.begin, &groups.summing, 1);
+        dispatch(pass, &pipelines.note, &groups.summing, self.rows);
+        indirect(pass, &pipelines.count, &self.noted, 1);
+        dispatch(pass, &pipelines.sum, &groups.summing, self.groups);
+        dispatch(pass, &pipelines.scan, &groups.summing, 1);
+        indirect(pass, &pipelines.list, &self.noted, 1);
+        indirect(pass, &pipelines.list_again, arguments, AGAIN_WORD);
     }
 
     /// GPU memory. Units: bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let buffers = [&self.uniform, &self.counts, &self.sums, &self.areas, &self.ladder];
+        let buffers = [
+            &self.uniform,
+            &self.counts,
+            &self.sums,
+            &self.noted,
+            &self.areas,
+            &self.ladder,
+        ];
         buffers.into_iter().map(wgpu::Buffer::size).sum()
     }
 }
@@ -349,11 +447,11 @@ fn cells_of_run(limit: f32, side: u32) -> u32 {
     cells.clamp(1, MOST_CELLS).min(side.max(1))
 }
 
-/// How many drops of each of `runs` runs are staged that have `limit` candidates in the mean: their number is Poisson's, and one in a
-/// thousand that has more is looked through again. None where there is no room for as many on what is `left` of the stage:
-/// then all runs are looked through again.
+/// How many drops of each of `runs` runs are staged that have `limit` candidates in the mean: their number is Poisson's, and one in
+/// a hundred thousand that has more is looked through again. None where there is no room for as many on what is `left` of the
+/// stage: then all runs are looked through again.
 fn room(limit: f32, runs: u32, left: u32) -> u32 {
-    let room = (limit + 3.0 * limit.max(0.0).sqrt()).ceil() as u32 + 2;
+    let room = (limit + 4.5 * limit.max(0.0).sqrt()).ceil() as u32 + 3;
     if u64::from(runs) * u64::from(room) <= u64::from(left) {
         room
     } else {
@@ -415,15 +513,18 @@ fn uniform(asked: &Asked, stage: u32) -> RainfallChoice {
             Some(_) => [0.0, -1.0, 0.0, 0.0],
         };
         let together = cells_of_run(ranks[0], of.side.x);
-        let runs = of.side.x.div_ceil(together) * of.side.y * of.side.z;
+        let rows = of.side.y * of.side.z;
+        let runs = of.side.x.div_ceil(together) * rows;
         let room = room(ranks[0] * together as f32, runs, stage - staged);
         *slot = ChoiceClass {
-            low: of.low.extend(0).to_array(),
+            low: of.low.extend(out.rows as i32).to_array(),
             side: of.side.extend(together).to_array(),
             runs: [out.runs, runs, room, staged],
             ranks,
-            reach: [of.reach_m, of.least_reach_m, of.streak_m, near_reaches[k]],
+            reach: [of.reach_m, of.least_reach_m, near_reaches[k], 0.0],
+            out: of.sides.map(|plane| plane.w),
         };
+        out.rows += rows;
         out.runs += runs;
         staged += runs * room;
     }

@@ -13,7 +13,7 @@ pub fn encode_project(pass: &mut wgpu::ComputePass, gpu: &RainfallGpu, view: &Ra
         return;
     }
     if let Some(choice) = view.choice.as_ref().filter(|_| view.chooses) {
-        choice.encode(pass, &gpu.choose);
+        choice.encode(pass, &gpu.choose, &view.arguments);
     }
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, bind_group, &[]);
@@ -21,6 +21,9 @@ pub fn encode_project(pass: &mut wgpu::ComputePass, gpu: &RainfallGpu, view: &Ra
 }
 
 /// Draws the projected streaks over a target of `format` with `samples` samples, but those behind glass.
+///
+/// The pass's viewport is the view's ([`RainfallInput::viewport_px`](super::RainfallInput)), which lies in the target; on a
+/// software device it is the scissor rectangle afterwards too.
 pub fn encode_draw(
     pass: &mut wgpu::RenderPass,
     gpu: &RainfallGpu,
@@ -54,6 +57,16 @@ pub fn encode_coverage(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &Ra
 }
 
 fn encode(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, key: OverlayKey) {
+    if let Some(band) = &view.guard_band {
+        band.open(pass);
+    }
+    encode_quads(pass, gpu, view, key);
+    if let Some(band) = &view.guard_band {
+        band.close(pass);
+    }
+}
+
+fn encode_quads(pass: &mut wgpu::RenderPass, gpu: &RainfallGpu, view: &RainfallViewGpu, key: OverlayKey) {
     let (all, draws) = (4 * HEAD_WORDS, view.draws());
     if let (Some(bind_group), Some(pipeline)) = (&view.draw, gpu.draw.get(key.soft(view.soft))) {
         pass.set_pipeline(pipeline);

@@ -75,7 +75,7 @@ pub struct RainfallInput<'a> {
     pub eye_height_m: f32,
     /// Velocity of the eye. Units: m/s.
     pub eye_velocity_m_s: Vec3,
-    /// Corner and size of the view in the target. Units: px.
+    /// Corner and size of the view in the target, within it. Units: px.
     pub viewport_px: Vec4,
     /// Focal length. Units: px.
     pub focal_px: f32,
@@ -138,7 +138,7 @@ impl RainfallInput<'_> {
             lamps,
             panes,
             patterned: u32::from(self.shutter.patterned),
-            pad_a: 0,
+            guard_share: 1.0,
             pad_b: 0,
             pad_c: 0,
             cover: self.cover,

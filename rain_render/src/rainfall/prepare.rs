@@ -4,6 +4,7 @@ use rain_core::rainfall::DropRecord;
 
 use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::gpu_types::{RainfallView, Streak};
+use crate::guard_band::GuardBand;
 use crate::overlay::{Overlay, OverlayKey};
 use crate::quad_indices::{DRAW_BYTES, QuadIndices, draw_words, quads_of_a_draw};
 use crate::rainfall::choose::{Asked, ChoiceGpu, ChoiceTargets, Choose};
@@ -25,11 +26,14 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(crate) const NO_DROP: u32 = u32::MAX;
 
 /// Words of the arguments before those of the draws: how many drops, how many that may have a pattern, how many there would
-/// be without a limit, none; workgroups of the projection, none.
-pub(super) const HEAD_WORDS: u64 = 8;
+/// be without a limit, none; workgroups of the projection, none; those of looking through runs again, none.
+pub(super) const HEAD_WORDS: u64 = 12;
 
 /// Word at which the workgroups of the projection begin.
 pub(super) const PROJECT_WORD: u64 = 4;
+
+/// Word at which the workgroups of looking through runs again begin.
+pub(super) const AGAIN_WORD: u64 = 8;
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
@@ -78,6 +82,7 @@ pub struct RainfallViewGpu {
     capacity: u32,
     /// Quads of one draw.
     of_a_draw: u32,
+    pub(super) guard_band: Option<GuardBand>,
     pub(super) most: u32,
     pub(super) panes: u32,
     /// Streaks fade where they meet the scene.
@@ -188,6 +193,7 @@ impl RainfallViewGpu {
             arguments: buffer(device, "rain drop draws", 4 * HEAD_WORDS, storage),
             capacity: 0,
             of_a_draw: quads_of_a_draw(device),
+            guard_band: None,
             most: 0,
             panes: 0,
             soft: false,
@@ -231,7 +237,7 @@ impl RainfallViewGpu {
     fn list(&mut self, queue: &wgpu::Queue, records: &[DropRecord]) {
         let drops = self.most;
         let near = if self.patterned { drops } else { 0 };
-        let mut words = vec![drops, near, drops, 0, drops.div_ceil(64), 1, 1, 0];
+        let mut words = vec![drops, near, drops, 0, drops.div_ceil(64), 1, 1, 0, 0, 1, 1, 0];
         let draws = |quads| draw_words(quads, self.draws(), self.of_a_draw);
         words.extend(draws(drops).chain(draws(near)));
         queue.write_buffer(&self.arguments, 0, bytemuck::cast_slice(&words));
@@ -260,14 +266,14 @@ impl RainfallViewGpu {
             Drops::Listed(container, _) => {
                 self.chooses = false;
                 let uniform = input.uniform(&container.classes);
-                self.upload(device, queue, gpu, &uniform, container.records.len() as u32);
+                self.upload(device, queue, gpu, uniform, container.records.len() as u32);
                 self.list(queue, &container.records[..self.most as usize]);
             }
             Drops::Chosen(choice) => {
                 self.chooses = true;
                 let cells = choice.cells();
                 let placements = cells.placements();
-                self.upload(device, queue, gpu, &input.uniform(&placements), choice.most_drops);
+                self.upload(device, queue, gpu, input.uniform(&placements), choice.most_drops);
                 let targets = ChoiceTargets {
                     view: &self.uniform,
                     arguments: &self.arguments,
@@ -296,19 +302,21 @@ impl RainfallViewGpu {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         gpu: &RainfallGpu,
-        uniform: &RainfallView,
+        mut uniform: RainfallView,
         wanted: u32,
     ) {
+        self.guard_band = GuardBand::new(device, uniform.viewport.into());
+        uniform.guard_share = self.guard_band.map_or(1.0, |band| band.share());
         let holds = device.limits().max_storage_buffer_binding_size / STREAK_BYTES;
         let holds = u32::try_from(holds).unwrap_or(u32::MAX);
         self.most = wanted.min(holds);
         self.panes = uniform.panes;
         self.soft = uniform.soft > 0.0;
         self.patterned = uniform.patterned > 0;
-        self.needs = ProjectKey::of(uniform);
+        self.needs = ProjectKey::of(&uniform);
         gpu.project.prepare(device, self.needs);
         self.grow(device, self.most, holds);
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
     }
 
     fn bind(&mut self, device: &wgpu::Device, gpu: &RainfallGpu, textures: RainfallTextures) {
@@ -342,19 +350,21 @@ impl RainfallViewGpu {
             entries: &even,
         }));
         let [uniform, streaks] = even;
-        self.near = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("rain rainfall near"),
-            layout: &gpu.near.layout,
-            entries: &[
-                uniform,
-                streaks,
-                entry(2, wgpu::BindingResource::TextureView(&scene)),
-                entry(3, self.records.as_entire_binding()),
-                entry(4, wgpu::BindingResource::TextureView(&environment)),
-                entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
-                entry(6, self.near_list.as_entire_binding()),
-            ],
-        }));
+        self.near = self.patterned.then(|| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("rain rainfall near"),
+                layout: &gpu.near.layout,
+                entries: &[
+                    uniform,
+                    streaks,
+                    entry(2, wgpu::BindingResource::TextureView(&scene)),
+                    entry(3, self.records.as_entire_binding()),
+                    entry(4, wgpu::BindingResource::TextureView(&environment)),
+                    entry(5, wgpu::BindingResource::Sampler(&gpu.sampler)),
+                    entry(6, self.near_list.as_entire_binding()),
+                ],
+            })
+        });
     }
 
     /// No more drops than this are drawn in this frame: as many as there are where they are listed, unless the device's buffers

@@ -38,6 +38,7 @@ fn view(focal_px: f64, exposure_s: f64) -> RainViewVolume {
         // 4 asin(sin of the product of both half widths).
         solid_angle_sr: 4.0 * f64::asin(0.8 * 0.4 / (1.64_f64 * 1.16).sqrt()),
         exposure_s,
+        turn_rad: 0.0,
     }
 }
 
@@ -493,7 +494,7 @@ fn a_view_draws_the_drops_within_reach_and_no_others() {
             .copied()
             .collect();
         records.by_ref().take(mine.len()).for_each(drop);
-        let streak = motion.velocity_m_s[k].length() * view.exposure_s;
+        let way = motion.velocity_m_s[k] * view.exposure_s;
         let reach = FADE_END * range.at(class.max_mm);
         let eye = (view.eye_m - motion.offset_m[k]) / class.cell_m;
         let cells = (reach / class.cell_m).ceil() as i64 + 1;
@@ -521,7 +522,8 @@ fn a_view_draws_the_drops_within_reach_and_no_others() {
                         let mut inside = FADE_END * range.at(drop.diameter) - p.length();
                         for plane in view.side_planes {
                             let side: Vec4 = plane;
-                            inside = inside.min(side.truncate().as_dvec3().dot(p) + streak + 0.01);
+                            let normal = side.truncate().as_dvec3();
+                            inside = inside.min(normal.dot(p).max(normal.dot(p - way)) + 0.01);
                         }
                         let biased = cell.map(|c| (c + 512) as u32);
                         let packed = biased[0] | biased[1] << 10 | biased[2] << 20;

@@ -52,10 +52,10 @@ fn chosen(
         bytemuck::pod_collect_to_vec(&gpu.read(buffer, 4 * count))
     };
     let draws = u64::from(view_gpu.most_drops().div_ceil(1 << 14));
-    let arguments = words(view_gpu.arguments(), 8 + 10 * draws);
+    let arguments = words(view_gpu.arguments(), 12 + 10 * draws);
     let records = words(view_gpu.records(), 2 * u64::from(arguments[0]));
     let mut work = arguments[4..7].to_vec();
-    work.extend(arguments[8..].chunks(5).map(|draw| draw[0]));
+    work.extend(arguments[12..].chunks(5).map(|draw| draw[0]));
     Chosen {
         records: records
             .chunks(2)

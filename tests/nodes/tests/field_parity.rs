@@ -85,6 +85,7 @@ impl FieldView {
             focal_px: f64::from(self.focal_px()),
             solid_angle_sr: 1.0,
             exposure_s: f64::from(self.exposure_s),
+            turn_rad: 0.0,
         };
         let mut motion = FieldMotion::default();
         motion.set_velocity(self.wind_m_s, 1.2041);
@@ -285,7 +286,7 @@ fn every_drop_beyond_its_range_is_hidden_and_every_one_inside_is_drawn() {
         "{} and {kept}",
         container.records.len()
     );
-    // The container keeps a margin of one streak at the sides and draws none closer than 0.1 m.
+    // The container keeps what streaks reach in from beyond the sides and draws none closer than 0.1 m.
     assert!(
         drawn <= kept && drawn * 100 > kept * 97,
         "{drawn} drawn, {kept} within the range"

@@ -69,6 +69,7 @@ fn cards(textures: &StreakTextureSettings, intensity: f64) -> Vec<Card> {
         focal_px: 623.5,
         solid_angle_sr: 1.0,
         exposure_s: 1.0 / 60.0,
+        turn_rad: 0.0,
     };
     let mut cards = Vec::new();
     plan.fill(

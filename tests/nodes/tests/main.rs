@@ -26,6 +26,7 @@ mod shader_functions;
 mod slope_mips;
 mod soft_streaks;
 mod splash;
+mod streak_border;
 mod streak_textures;
 mod water;
 mod water_map;

@@ -15,6 +15,8 @@ pub struct View {
     pub focal: f64,
     /// s.
     pub exposure: f64,
+    /// How far the view turns in it, rad.
+    pub turn: f64,
     /// κ.
     pub quality: f64,
 }
@@ -80,7 +82,8 @@ pub fn seen(seed: u64, class: &Class, view: &View, density: impl Fn(f64) -> f64)
     let range = |d: f64| 1.2 * (view.quality * contrast_range(d, view.focal, view.exposure)).min(15.0);
     let ahead = lead(view.velocity);
     let relative = [0, 1, 2].map(|i| class.velocity[i] - view.velocity[i]);
-    let streak = length(relative) * view.exposure;
+    let way = relative.map(|v| v * view.exposure);
+    let furthest = range(largest) + length(ahead);
     let eye = [0, 1, 2].map(|i| (view.eye[i] - class.offset[i]) / class.cell);
     let home = eye.map(f64::floor);
     // Ranks beyond every threshold of the class.
@@ -106,8 +109,12 @@ pub fn seen(seed: u64, class: &Class, view: &View, density: impl Fn(f64) -> f64)
                     }
                     let place = [0, 1, 2].map(|i| (cell[i] as f64 + drop.place[i] - (eye[i] - home[i])) * class.cell);
                     let mut inside = range(drop.diameter) - from_way(place, ahead);
+                    // Where it was when the shutter opened, and by how much the sides may have been elsewhere.
+                    let was = [0, 1, 2].map(|i| place[i] - way[i]);
+                    let turned = view.turn.clamp(0.0, 0.1) * (furthest + length(way));
                     for [nx, ny, nz, offset] in view.sides {
-                        inside = inside.min(dot([nx, ny, nz], place) + offset + streak + 0.01);
+                        let (now, then) = (dot([nx, ny, nz], place), dot([nx, ny, nz], was) + turned);
+                        inside = inside.min(now.max(then) + offset + 0.01);
                     }
                     found.push(Seen {
                         cell,

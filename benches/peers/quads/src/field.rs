@@ -165,6 +165,7 @@ fn volume() -> RainViewVolume {
         focal_px: f64::from(focal_px()),
         solid_angle_sr: 4.0 * ratio.asin(),
         exposure_s: f64::from(EXPOSURE_S),
+        turn_rad: 0.0,
     }
 }
 
