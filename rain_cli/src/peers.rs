@@ -86,8 +86,8 @@ struct Row {
     cpu_ms: [f64; 3],
     /// Over that of what it is compared with.
     ratio: f64,
-    /// How much more it cost than ours in the same turn, and where that lies with a chance of 95 %.
-    more_ms: [f64; 3],
+    /// How much more it cost than ours in the same turn, and where that lies with a chance of 95 %; not of passes.
+    more_ms: Option<[f64; 3]>,
 }
 
 /// Builds and runs the programs; prints the table and writes it as CSV.
@@ -245,7 +245,9 @@ fn frames(programs: &Path, count: u32, rounds: u32) -> Result<Vec<Row>, String> 
                 wall_ms: middle(costs.iter().map(|cost| cost.wall_ms))[0],
                 cpu_ms,
                 ratio: cpu_ms[0] / ours,
-                more_ms: middle(costs.iter().zip(&all[0]).map(|(cost, ours)| cost.cpu_ms - ours.cpu_ms)),
+                more_ms: Some(middle(
+                    costs.iter().zip(&all[0]).map(|(cost, ours)| cost.cpu_ms - ours.cpu_ms),
+                )),
             }
         })
         .collect())
@@ -267,7 +269,7 @@ fn quads(programs: &Path, count: u32) -> Result<Vec<Row>, String> {
             wall_ms: cost.wall_ms,
             cpu_ms: [cost.cpu_ms; 3],
             ratio: cost.cpu_ms / bare.cpu_ms,
-            more_ms: [cost.cpu_ms - bare.cpu_ms; 3],
+            more_ms: None,
         });
     }
     Ok(rows)
@@ -290,7 +292,9 @@ fn middle(values: impl Iterator<Item = f64>) -> [f64; 3] {
 fn columns(row: &Row) -> [String; 11] {
     let shown = |name: &str| row.shown[name].as_f64().unwrap_or_default();
     let [cpu, low, high] = row.cpu_ms;
-    let [more, more_low, more_high] = row.more_ms;
+    let [more, more_low, more_high] = row
+        .more_ms
+        .map_or_else(Default::default, |more| more.map(|ms| format!("{ms:.1}")));
     [
         format!("{:.0}", shown("visible")),
         format!("{:.1}", shown("length_px")),
@@ -300,9 +304,9 @@ fn columns(row: &Row) -> [String; 11] {
         format!("{low:.1}"),
         format!("{high:.1}"),
         format!("{:.2}", row.ratio),
-        format!("{more:.1}"),
-        format!("{more_low:.1}"),
-        format!("{more_high:.1}"),
+        more,
+        more_low,
+        more_high,
     ]
 }
 
@@ -336,7 +340,14 @@ fn table(rows: &[Row]) -> String {
             more_low,
             more_high,
         ] = columns(row);
-        let (range, more_range) = (format!("({low} to {high})"), format!("({more_low} to {more_high})"));
+        let between = |low: &str, high: &str| {
+            if low == high {
+                String::new()
+            } else {
+                format!("({low} to {high})")
+            }
+        };
+        let (range, more_range) = (between(&low, &high), between(&more_low, &more_high));
         let _ = writeln!(
             out,
             "{:<8} {:<16} {visible:>7}  {length:>10}  {width:>9}  {wall:>8}  {cpu:>8} {range:<17}  {ratio:>5}  {more:>8} {more_range}",
@@ -373,7 +384,7 @@ mod tests {
             wall_ms: 1.0,
             cpu_ms: [40.0, 35.0, 44.0],
             ratio: 2.0,
-            more_ms: [20.0, 18.5, 21.0],
+            more_ms: Some([20.0, 18.5, 21.0]),
         };
         let rows = [row];
         assert!(csv(&rows).ends_with("10,hanabi,12,0.0,0.00,1.0,40.0,35.0,44.0,2.00,20.0,18.5,21.0\n"));

@@ -462,6 +462,25 @@ pub(crate) fn view_volume(
         focal_px: f64::from(0.5 * size.y as f32 * sy),
         solid_angle_sr: 4.0 * libm::asin(ratio.min(1.0)),
         exposure_s: f64::from(exposure_s),
-        turn_rad: f64::from(motion.turn_rad_s.length() * exposure_s),
+        // A long lens that turns by half its view would hold twice as many drops as there is room for.
+        turn_rad: f64::from((motion.turn_rad_s.length() * exposure_s).min(0.25 * tx.min(ty))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_that_turns_says_so_but_by_no_more_than_a_quarter_of_itself() {
+        let turn_of = |fov: f32, turn_rad_s: f32| {
+            let clip = Mat4::perspective_infinite_reverse_rh(fov, 16.0 / 9.0, 0.1);
+            let mut motion = ViewMotion::default();
+            motion.turn_rad_s = Vec3::Y * turn_rad_s;
+            view_volume(clip, UVec2::new(1280, 720), &GlobalTransform::IDENTITY, &motion, 0.02).turn_rad
+        };
+        assert_eq!(turn_of(1.0, 0.0), 0.0);
+        assert!((turn_of(1.0, 3.0) - 0.06).abs() < 1e-7);
+        assert!((turn_of(0.1, 3.0) - 0.25 * 0.05_f64.tan()).abs() < 1e-6);
     }
 }
