@@ -169,6 +169,15 @@ mod tests {
         .map(|n| n.normalize().extend(0.0))
     }
 
+    /// Numbers in [−1, 1), always the same of a seed.
+    fn signed(seed: u32) -> impl FnMut() -> f32 {
+        let mut word = seed;
+        move || {
+            word = crate::hash::pcg(word);
+            2.0 * crate::hash::unit_f32(word) - 1.0
+        }
+    }
+
     #[test]
     fn a_view_reaches_to_its_corners_and_hardly_behind_itself() {
         let extent = |axis| extent_m(&planes(), 10.0, Vec3::ZERO, axis);
@@ -193,11 +202,7 @@ mod tests {
 
     #[test]
     fn a_streak_with_an_end_in_the_picture_is_kept_and_few_others() {
-        let mut word = 7_u32;
-        let mut random = || {
-            word = crate::hash::pcg(word);
-            2.0 * crate::hash::unit_f32(word) - 1.0
-        };
+        let mut random = signed(7);
         let inside = |planes: &[Vec4; 4], p: Vec3| planes.iter().all(|plane| plane.truncate().dot(p) + plane.w >= 0.0);
         let furthest = 5.0;
         let (mut shown, mut kept, mut by_length) = ([0; 2], [0; 2], [0; 2]);
@@ -242,11 +247,7 @@ mod tests {
 
     #[test]
     fn no_place_inside_is_left_out_whatever_the_planes() {
-        let mut word = 1_u32;
-        let mut random = || {
-            word = crate::hash::pcg(word);
-            2.0 * crate::hash::unit_f32(word) - 1.0
-        };
+        let mut random = signed(1);
         let mut inside = 0;
         for round in 0..60 {
             let mut planes = planes();

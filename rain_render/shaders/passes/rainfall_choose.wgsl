@@ -291,7 +291,7 @@ fn begin() {
     atomicStore(&noting[3], 1u);
 }
 
-// Two out of three runs have no cell in the view: counting goes through the others only. One invocation a row of cells.
+// Six out of ten runs have no cell in the view: counting goes through the others only. One invocation a row of cells.
 @compute @workgroup_size(64)
 fn note(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let row = numbered(group, local);

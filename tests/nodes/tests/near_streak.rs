@@ -4,7 +4,8 @@ use glam::{DVec3, Vec2, Vec3};
 use rain_core::optics::{StreakAngles, streak_pattern, swinging_body};
 use rain_core::rainfall::{Container, Distribution, Lamp, SizeClass, Spectrum};
 use rain_render::rainfall::{
-    DEPTH_FORMAT, Lighting, RainfallGpu, RainfallTextures, RainfallViewGpu, StreakDraws, encode_draw, encode_project,
+    DEPTH_FORMAT, Lighting, RainfallGpu, RainfallInput, RainfallTextures, RainfallViewGpu, StreakDraws, encode_draw,
+    encode_project,
 };
 
 use crate::device::{Device, device};
@@ -119,7 +120,7 @@ fn sky(gpu: &Device) -> wgpu::TextureView {
     })
 }
 
-pub fn attachment(gpu: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+fn attachment(gpu: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d {
@@ -221,8 +222,55 @@ fn draw(gpu: &Device, pipelines: &mut RainfallGpu, view: &FieldView, container: 
     red_of(gpu, encoder, &target)
 }
 
+/// The red of an [`attachment`] with the streaks of a view over black, row after row; `scene`: the depth that is there.
+pub fn red_of_streaks(
+    gpu: &Device,
+    pipelines: &RainfallGpu,
+    input: &RainfallInput,
+    textures: RainfallTextures,
+    scene: &wgpu::TextureView,
+) -> Vec<f32> {
+    let target = attachment(gpu, FORMAT);
+    let mut buffers = RainfallViewGpu::new(&gpu.device);
+    buffers.prepare(&gpu.device, &gpu.queue, pipelines, input, textures);
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encode_project(
+        &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()),
+        pipelines,
+        &buffers,
+    );
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: None,
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target.create_view(&wgpu::TextureViewDescriptor::default()),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: scene,
+                depth_ops: None,
+                stencil_ops: None,
+            }),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let [x, y, width, height] = input.viewport_px.to_array();
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        encode_draw(&mut pass, pipelines, &buffers, FORMAT, 1);
+    }
+    red_of(gpu, encoder, &target)
+}
+
 /// The red of an [`attachment`] of [`FORMAT`] after what an encoder holds, row after row.
-pub fn red_of(gpu: &Device, mut encoder: wgpu::CommandEncoder, target: &wgpu::Texture) -> Vec<f32> {
+fn red_of(gpu: &Device, mut encoder: wgpu::CommandEncoder, target: &wgpu::Texture) -> Vec<f32> {
     let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: u64::from(SIDE * SIDE * 8),

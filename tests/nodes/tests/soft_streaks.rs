@@ -3,12 +3,12 @@
 use glam::{DVec2, DVec3, Vec2, Vec4};
 use rain_core::rainfall::{Container, Distribution, Spectrum};
 use rain_render::gpu_types::Streak;
-use rain_render::rainfall::{RainfallGpu, RainfallTextures, RainfallViewGpu, StreakDraws, encode_draw, encode_project};
+use rain_render::rainfall::{RainfallGpu, RainfallTextures, RainfallViewGpu, StreakDraws, encode_project};
 
 use crate::cover_parity::{EYE, depth_map, depth_texture, heights, placement};
 use crate::device::{Device, device};
 use crate::field_parity::FieldView;
-use crate::near_streak::{FORMAT, SIDE, attachment, red_of};
+use crate::near_streak::{FORMAT, SIDE, red_of_streaks};
 
 const SEED: u64 = 5;
 const NEAR_M: f32 = 0.05;
@@ -66,7 +66,6 @@ fn draw(
         ..StreakDraws::default()
     };
     pipelines.prepare_pipelines(&gpu.device, FORMAT, 1, draws);
-    let target = attachment(gpu, FORMAT);
     let mut input = view.input(SEED, drops);
     input.shutter.soft_m = soft_m;
     input.viewport_px = Vec4::new(CORNER[0] as f32, CORNER[1] as f32, VIEW as f32, VIEW as f32);
@@ -74,42 +73,7 @@ fn draw(
         scene_depth: Some(scene),
         ..RainfallTextures::default()
     };
-    let mut buffers = RainfallViewGpu::new(&gpu.device);
-    buffers.prepare(&gpu.device, &gpu.queue, pipelines, &input, textures);
-    let mut encoder = gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encode_project(
-        &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()),
-        pipelines,
-        &buffers,
-    );
-    {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: None,
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target.create_view(&wgpu::TextureViewDescriptor::default()),
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: scene,
-                depth_ops: None,
-                stencil_ops: None,
-            }),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        let [x, y] = CORNER.map(|v| v as f32);
-        pass.set_viewport(x, y, VIEW as f32, VIEW as f32, 0.0, 1.0);
-        encode_draw(&mut pass, pipelines, &buffers, FORMAT, 1);
-    }
-    let all = red_of(gpu, encoder, &target);
+    let all = red_of_streaks(gpu, pipelines, &input, textures, scene);
     let red = |x: u32, y: u32| all[((y + CORNER[1]) * SIDE + x + CORNER[0]) as usize];
     (0..VIEW * VIEW).map(|i| red(i % VIEW, i / VIEW)).collect()
 }

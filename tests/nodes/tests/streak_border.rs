@@ -2,12 +2,12 @@
 
 use glam::{Vec2, Vec4};
 use rain_core::rainfall::{Container, Distribution, Spectrum};
-use rain_render::rainfall::{RainfallGpu, RainfallTextures, RainfallViewGpu, StreakDraws, encode_draw, encode_project};
+use rain_render::rainfall::{RainfallGpu, RainfallTextures, StreakDraws};
 
 use crate::cover_parity::depth_texture;
 use crate::device::{Device, device};
 use crate::field_parity::FieldView;
-use crate::near_streak::{FORMAT, SIDE, attachment, red_of};
+use crate::near_streak::{FORMAT, SIDE, red_of_streaks};
 
 const SEED: u64 = 11;
 
@@ -24,46 +24,11 @@ fn view(side: u32) -> FieldView {
 
 /// The red of the target, row after row, with a view whose corner is at `corner`.
 fn draw(gpu: &Device, pipelines: &RainfallGpu, view: &FieldView, drops: &Container, corner: [u32; 2]) -> Vec<f32> {
-    let target = attachment(gpu, FORMAT);
     let far = depth_texture(gpu, SIDE, &vec![0.0; (SIDE * SIDE) as usize]);
     let mut input = view.input(SEED, drops);
     let [x, y] = corner.map(|v| v as f32);
     input.viewport_px = Vec4::new(x, y, view.size.x, view.size.y);
-    let mut buffers = RainfallViewGpu::new(&gpu.device);
-    buffers.prepare(&gpu.device, &gpu.queue, pipelines, &input, RainfallTextures::default());
-    let mut encoder = gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encode_project(
-        &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()),
-        pipelines,
-        &buffers,
-    );
-    {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: None,
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target.create_view(&wgpu::TextureViewDescriptor::default()),
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &far,
-                depth_ops: None,
-                stencil_ops: None,
-            }),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        pass.set_viewport(x, y, view.size.x, view.size.y, 0.0, 1.0);
-        encode_draw(&mut pass, pipelines, &buffers, FORMAT, 1);
-    }
-    red_of(gpu, encoder, &target)
+    red_of_streaks(gpu, pipelines, &input, RainfallTextures::default(), &far)
 }
 
 #[test]
