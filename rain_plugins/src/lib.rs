@@ -119,7 +119,7 @@ pub mod prelude {
     pub use crate::lightning::{LightningLight, LightningLook};
     pub use crate::rain_bloom::{RainBloom, RainBloomPlugin};
     pub use crate::rainbow::{Rainbow, RainbowPlugin};
-    pub use crate::rainfall::{CardSettings, RainView, SeenThrough};
+    pub use crate::rainfall::{BudgetedTime, CardSettings, RainFrameBudget, RainShare, RainView, SeenThrough};
     pub use crate::render_adapter::RainRenderStatus;
     pub use crate::report::{PassName, RainReport, SkipReason};
     pub use crate::splash::{SplashMask, SplashSettings};

@@ -4,6 +4,7 @@ mod basins;
 mod canopy;
 mod cover;
 mod drop;
+mod drop_count;
 mod fall;
 mod fall_speed;
 mod ground;
@@ -32,6 +33,7 @@ pub fn all() -> Vec<Study> {
         light::studies(),
         lamps::studies(),
         streaks::studies(),
+        drop_count::studies(),
         hash::studies(),
         canopy::studies(),
         weather::studies(),

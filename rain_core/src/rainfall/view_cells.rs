@@ -4,10 +4,9 @@
 use glam::{DVec3, IVec3, UVec3, Vec3, Vec4};
 
 use super::classes::{CLASS_COUNT, SizeClass};
-use super::container::{
-    CELL_BIAS, ClassPlacement, DrawRange, FADE_END, LEAD_CAP_M, LEAD_TIME_S, RainViewVolume, TURN_CAP_RAD,
-};
+use super::container::{CELL_BIAS, ClassPlacement, DrawRange, FADE_END, RainViewVolume, TURN_CAP_RAD};
 use super::field::{FieldMotion, LatticeEye};
+use super::lead::lead_m;
 use super::spectrum::Spectrum;
 use crate::error::clamped;
 
@@ -66,7 +65,7 @@ impl ViewCells {
         } else {
             DVec3::ZERO
         };
-        let lead_m = (eye_velocity * LEAD_TIME_S).clamp_length_max(LEAD_CAP_M).as_vec3();
+        let lead_m = lead_m(eye_velocity).as_vec3();
         let raining = (spectrum.n0_per_m3_mm > 0.0 || anywhere) && kappa > 0.0;
         let sees = !view.side_planes.iter().any(|plane| plane.is_nan()) && !view.exposure_s.is_nan();
         let classes = core::array::from_fn(|k| {

@@ -13,6 +13,7 @@ use rain_core::rainfall::{
 };
 use rain_ecs::prelude::*;
 
+use super::frame_budget::RainShare;
 use super::lamps::ViewLamps;
 use super::motion::ViewMotion;
 use super::settings::CardSettings;
@@ -125,7 +126,7 @@ pub(crate) fn fill_cards(
     seed: Res<RainSeed>,
     settings: Res<CardSettings>,
     mut lattice: ResMut<LatticeState>,
-    software: Res<SoftwareAdapter>,
+    (software, share): (Res<SoftwareAdapter>, Res<RainShare>),
     report: Res<RainReport>,
     air: Res<AirAroundView>,
     areas: Option<Res<RainAreas>>,
@@ -191,7 +192,7 @@ pub(crate) fn fill_cards(
         let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
         // Where no rain is near enough for single drops, their range is that of the rain ahead.
         let kappa = near.shutter.map_or_else(
-            || quality_for_budget(&spectrum, &volume, f64::from(view.budget(*software))),
+            || quality_for_budget(&spectrum, &volume, f64::from(view.budget(*software, &share))),
             |shutter| f64::from(shutter.kappa),
         );
         let mut cards = frame.take_spare();

@@ -1,6 +1,7 @@
 //! Rain in the air for each marked camera: single drops in a container that follows the view, cards of many beyond.
 
 mod cards;
+mod frame_budget;
 mod lamps;
 mod lead;
 mod motion;
@@ -10,6 +11,7 @@ mod view;
 
 pub use cards::CardViewFrame;
 pub(crate) use cards::{CardShot, LatticeState, fill_cards};
+pub use frame_budget::{BudgetedTime, RainFrameBudget, RainShare};
 pub use lamps::ViewLamps;
 pub(crate) use lamps::{SceneLamps, keep_strongest, shining};
 pub(crate) use lead::leading_view;

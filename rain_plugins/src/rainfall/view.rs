@@ -14,6 +14,7 @@ use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
 
 use super::cards::{CardViewFrame, LatticeState, fill_cards};
+use super::frame_budget::{RainFrameBudget, RainShare, hold_frame_budget};
 use super::lamps::{ViewLamps, choose_lamps};
 use super::motion::ViewMotion;
 use super::panes::{SeenThrough, ViewPanes, choose_panes, mark_blended};
@@ -40,12 +41,14 @@ pub struct RainView {
     /// Draws rain in this view.
     pub enabled: bool,
     /// How many streaks to draw singly; `None`: 30,000 on a software adapter, 100,000 on a GPU. Domain: [0, 4·10⁶].
-    /// The number is spent on the drops with the most contrast.
+    /// The number is spent on the drops with the most contrast. [`RainFrameBudget`] draws a share of it where frames would
+    /// take too long.
     pub streak_budget: Option<u32>,
     /// Gain on streak contrast alone: 1 is physical, 1…32. Default: 4, by eye: physical streaks are 1–3 % opaque and
     /// vanish in a game's picture; above 8 rain looks drawn.
     pub contrast: f32,
-    /// Shutter time. Units: s. Domain: [0.0001, 0.25]. Default: 1/60. Longer: longer and fainter streaks.
+    /// Shutter time, of the scene's clock: in slow motion a camera's own is as much shorter. Units: s. Domain: [0.0001, 0.25].
+    /// Default: 1/60. Longer: longer and fainter streaks.
     pub exposure_s: f32,
     /// Distance over which streaks fade where they meet the scene (needs `DepthPrepass` and `Msaa::Off`). Units: m. Default: 0.15.
     pub soft_m: f32,
@@ -130,8 +133,8 @@ impl RainView {
 
 impl RainView {
     /// The number of streaks in force.
-    pub(super) fn budget(&self, software: SoftwareAdapter) -> u32 {
-        self.streak_budget.unwrap_or(if software.0 { 30_000 } else { 100_000 })
+    pub(super) fn budget(&self, software: SoftwareAdapter, share: &RainShare) -> u32 {
+        share.of(self.streak_budget.unwrap_or(if software.0 { 30_000 } else { 100_000 }))
     }
 
     /// Whether cards are drawn.
@@ -171,6 +174,8 @@ struct QualityOf {
     solid_angle_sr: f64,
     exposure_s: f64,
     budget: u32,
+    /// How much more the view holds because it moves, in steps of 3 %.
+    growth: i32,
 }
 
 /// What a view draws this frame; extracted to the render world.
@@ -270,6 +275,10 @@ impl Plugin for RainfallPlugin {
             .init_resource::<AirAroundView>()
             .init_resource::<CardSettings>()
             .init_resource::<LatticeState>()
+            .register_type::<RainFrameBudget>()
+            .init_resource::<RainFrameBudget>()
+            .init_resource::<RainShare>()
+            .add_systems(PreUpdate, hold_frame_budget)
             .add_systems(
                 PostUpdate,
                 (
@@ -281,6 +290,12 @@ impl Plugin for RainfallPlugin {
     }
 }
 
+/// A view whose lead makes it hold more within this by another step gets another κ. Units: m.
+const LEAD_SAMPLE_M: f64 = 3.0;
+
+/// A step of the logarithm of how much more a view holds. Units: none.
+const LEAD_STEP: f64 = 0.03;
+
 /// κ follows its target with this time constant, so that a change of rain does not jump. Units: s.
 const QUALITY_TIME_S: f64 = 1.0;
 
@@ -290,6 +305,7 @@ pub(crate) fn choose_drops(
     field: Res<RainfallField>,
     seed: Res<RainSeed>,
     software: Res<SoftwareAdapter>,
+    share: Res<RainShare>,
     report: Res<RainReport>,
     air: Res<AirAroundView>,
     areas: Option<Res<RainAreas>>,
@@ -339,13 +355,14 @@ pub(crate) fn choose_drops(
         }
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, &motion, settings.exposure_s);
-        let budget = settings.budget(*software);
+        let budget = settings.budget(*software, &share);
         let of = QualityOf {
             spectrum,
             focal_px: volume.focal_px,
             solid_angle_sr: volume.solid_angle_sr,
             exposure_s: volume.exposure_s,
             budget,
+            growth: (volume.lead_growth(LEAD_SAMPLE_M).ln() / LEAD_STEP).round() as i32,
         };
         let target = match frame.quality {
             Some(quality) if quality.of == of => quality.target,

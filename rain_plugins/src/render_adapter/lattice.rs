@@ -21,6 +21,7 @@ use rain_render::lattice::{
 use rain_render::rainfall::RainfallTextures;
 use rain_render::streak_textures::{StreakArray, StreakTextureGpu, encode_streak_textures};
 
+use super::after_blur::RainOrder;
 use super::extract::{ExtractedRainScene, ExtractedRainView};
 use super::prepare::view_lighting;
 use super::record::{draw_within, over_scene};
@@ -229,8 +230,9 @@ pub(super) fn lattice_behind_glass(
     encode_lattice_behind(&mut pass, &lattice.gpu, view_gpu, view.target_format, msaa.samples());
 }
 
-/// Draws a view's cards over its colour target, but those behind glass. What single streaks cover comes after.
-pub(super) fn lattice(
+/// Draws a view's cards over its colour target, but those behind glass. What single streaks cover comes after. Once for views
+/// whose rain comes after blur, once for the others.
+pub(super) fn lattice<const AFTER_BLUR: bool>(
     view: ViewQuery<(
         Entity,
         &ExtractedView,
@@ -238,13 +240,16 @@ pub(super) fn lattice(
         &ViewTarget,
         &ViewDepthTexture,
         &Msaa,
+        RainOrder,
     )>,
     lattice: Res<LatticeViews>,
     report: Res<RainReport>,
     mut ctx: RenderContext,
 ) {
-    let (entity, view, _, target, depth, msaa) = view.into_inner();
-    let Some(view_gpu) = lattice.views.get(&entity).filter(|view| view.cards() > 0) else {
+    let (entity, view, _, target, depth, msaa, order) = view.into_inner();
+    let in_order = order.is_after_blur() == AFTER_BLUR;
+    let of_view = lattice.views.get(&entity);
+    let Some(view_gpu) = of_view.filter(|view| in_order && view.cards() > 0) else {
         return;
     };
     let recorder = ctx.diagnostic_recorder();

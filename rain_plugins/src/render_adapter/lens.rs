@@ -12,6 +12,7 @@ use bevy::render::sync_world::RenderEntity;
 use bevy::render::view::{ExtractedView, ViewTarget};
 use rain_render::lens::{LensGpu, LensInput, LensViewGpu, encode_lens};
 
+use super::after_blur::RainOrder;
 use crate::lens::{LensGlass, LensShot};
 use crate::report::{PassName, RainReport};
 
@@ -71,15 +72,18 @@ pub(super) fn prepare_lenses(
     }
 }
 
-/// Draws the finished view again, through its glass.
-pub(super) fn lens(
-    view: ViewQuery<(Entity, &ExtractedView, &ExtractedLensView, &ViewTarget)>,
+/// Draws the finished view again, through its glass. Once for views whose rain comes after blur, once for the others.
+pub(super) fn lens<const AFTER_BLUR: bool>(
+    view: ViewQuery<(Entity, &ExtractedView, &ExtractedLensView, &ViewTarget, RainOrder)>,
     lenses: Res<LensViews>,
     device: Res<RenderDevice>,
     report: Res<RainReport>,
     mut ctx: RenderContext,
 ) {
-    let (entity, view, _, target) = view.into_inner();
+    let (entity, view, _, target, order) = view.into_inner();
+    if order.is_after_blur() != AFTER_BLUR {
+        return;
+    }
     let (Some(gpu), Some(view_gpu)) = (&lenses.gpu, lenses.views.get(&entity)) else {
         return;
     };

@@ -5,6 +5,7 @@
 //! | `extract.rs` | main world → render world, plain data |
 //! | `prepare.rs` | uploads and bind groups, once a frame |
 //! | `record.rs` | commands, once a view |
+//! | `after_blur.rs` | which views draw their rain after anti-aliasing over frames and motion blur |
 //! | `haze.rs` | all three for haze |
 //! | `far_rain.rs` | all three for far rain |
 //! | `lattice.rs` | all three for cards and their streak textures |
@@ -14,6 +15,7 @@
 //! | `wave_levels.rs` | heights of waves, read back for snapshots |
 //! | `wet_material.rs` | the extension of `StandardMaterial` that gets wet |
 
+mod after_blur;
 mod counts;
 mod extract;
 mod far_rain;
@@ -37,6 +39,8 @@ use bevy::core_pipeline::schedule::{Core3d, camera_driver};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::{Image, ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
 use bevy::pbr::main_transmissive_pass_3d;
+use bevy::post_process::bloom::bloom;
+use bevy::post_process::motion_blur::motion_blur;
 use bevy::prelude::*;
 pub(crate) use bevy::render::RenderApp;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
@@ -422,18 +426,28 @@ impl Plugin for RainRenderPlugin {
                     (
                         haze::haze_over_sky,
                         far_rain::far_rain,
-                        splash::splash,
-                        lattice::lattice,
-                        record::rainfall,
+                        splash::splash::<false>,
+                        lattice::lattice::<false>,
+                        record::rainfall::<false>,
                     )
                         .chain()
                         .in_set(Core3dSystems::MainPass)
                         .after(main_transparent_pass_3d)
                         // Transparent fragments that are sorted by pixel reach the picture here.
                         .after(oit_resolve),
-                    lens::lens
+                    lens::lens::<false>
                         .after(Core3dSystems::MainPass)
                         .before(Core3dSystems::EarlyPostProcess),
+                    (
+                        splash::splash::<true>,
+                        lattice::lattice::<true>,
+                        record::rainfall::<true>,
+                        lens::lens::<true>,
+                    )
+                        .chain()
+                        .in_set(Core3dSystems::PostProcess)
+                        .after(motion_blur)
+                        .before(bloom),
                 ),
             );
     }

@@ -13,6 +13,7 @@ use rain_render::masks::MaskTargets;
 use rain_render::rainfall::{RainfallViewGpu, encode_behind, encode_coverage, encode_draw, encode_project};
 use rain_render::reflection::encode_reflection_mips;
 
+use super::after_blur::RainOrder;
 use super::counts::Counts;
 use super::extract::{ExtractedMap, ExtractedRainScene, ExtractedRainView, ExtractedWaves};
 use super::lattice::LatticeViews;
@@ -258,8 +259,8 @@ pub(super) fn count_drops(mut counts: ResMut<DropCounts>, report: Res<RainReport
 }
 
 /// Chooses and projects a view's streaks, if that has not been done, and draws them over its colour target, but those behind glass; and
-/// its masks where somebody asked for them.
-pub(super) fn rainfall(
+/// its masks where somebody asked for them. Once for views whose rain comes after blur, once for the others.
+pub(super) fn rainfall<const AFTER_BLUR: bool>(
     view: ViewQuery<(
         Entity,
         &ExtractedView,
@@ -267,6 +268,7 @@ pub(super) fn rainfall(
         &ViewTarget,
         &ViewDepthTexture,
         &Msaa,
+        RainOrder,
     )>,
     gpu: Res<RainGpu>,
     cards: Res<LatticeViews>,
@@ -276,7 +278,10 @@ pub(super) fn rainfall(
     mut counts: ResMut<DropCounts>,
     mut ctx: RenderContext,
 ) {
-    let (entity, view, rain, target, depth, msaa) = view.into_inner();
+    let (entity, view, rain, target, depth, msaa, order) = view.into_inner();
+    if order.is_after_blur() != AFTER_BLUR {
+        return;
+    }
     let view_gpu = gpu.views.get(&entity).filter(|_| rain.shutter.is_some());
 
     if let Some(view_gpu) = view_gpu {

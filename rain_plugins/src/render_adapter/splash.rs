@@ -20,6 +20,7 @@ use rain_render::splash::{
     encode_splash_coverage, encode_splash_draw, encode_splash_make,
 };
 
+use super::after_blur::RainOrder;
 use super::counts::Counts;
 use super::extract::{ExtractedRainScene, ExtractedRainView};
 use super::prepare::{level_params, view_lighting};
@@ -227,8 +228,8 @@ pub(super) fn splash_behind_glass(
 }
 
 /// Makes a view's splashes, if that has not been done, and draws them over its colour target, but those behind glass; and
-/// their mask where somebody asked for it.
-pub(super) fn splash(
+/// their mask where somebody asked for it. Once for views whose rain comes after blur, once for the others.
+pub(super) fn splash<const AFTER_BLUR: bool>(
     view: ViewQuery<(
         Entity,
         &ExtractedView,
@@ -236,6 +237,7 @@ pub(super) fn splash(
         &ViewTarget,
         &ViewDepthTexture,
         &Msaa,
+        RainOrder,
     )>,
     mut splashes: ResMut<SplashViews>,
     device: Res<RenderDevice>,
@@ -243,7 +245,10 @@ pub(super) fn splash(
     report: Res<RainReport>,
     mut ctx: RenderContext,
 ) {
-    let (entity, view, splash, target, depth, msaa) = view.into_inner();
+    let (entity, view, splash, target, depth, msaa, order) = view.into_inner();
+    if order.is_after_blur() != AFTER_BLUR {
+        return;
+    }
     let splashes = &mut *splashes;
     let view_gpu = splashes.views.get(&entity).filter(|_| splash.shot.is_some());
     if let Some(view_gpu) = view_gpu {

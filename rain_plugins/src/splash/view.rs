@@ -14,7 +14,7 @@ use rain_render::splash::{SpoutStream, StepSplash};
 use super::feet::{RecentSteps, frame_time_s, keep_steps};
 use super::spouts::{Pouring, SPOUT_REACH_M, in_air};
 use crate::cover::{AirAroundView, CoverMap};
-use crate::rainfall::{RainView, SoftwareAdapter, ViewMotion, choose_drops, view_volume};
+use crate::rainfall::{RainShare, RainView, SoftwareAdapter, ViewMotion, choose_drops, view_volume};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
 use crate::surface::SurfaceState;
@@ -156,6 +156,7 @@ impl Plugin for SplashPlugin {
         app.register_type::<SplashSettings>()
             .init_resource::<SplashSettings>()
             .init_resource::<SoftwareAdapter>()
+            .init_resource::<RainShare>()
             .init_resource::<AirAroundView>()
             .init_resource::<RecentSteps>()
             .add_message::<FootSplash>()
@@ -186,7 +187,7 @@ fn aim_splashes(
     seed: Res<RainSeed>,
     settings: Res<SplashSettings>,
     mut kept: Local<Option<SplashSettings>>,
-    software: Res<SoftwareAdapter>,
+    (software, share): (Res<SoftwareAdapter>, Res<RainShare>),
     report: Res<RainReport>,
     air: Res<AirAroundView>,
     cover: Option<Res<CoverMap>>,
@@ -269,7 +270,7 @@ fn aim_splashes(
         }
         let clip_from_view = projection.get_clip_from_view();
         let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
-        let budget = settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 });
+        let budget = share.of(settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 }));
         // Where there are steps and spouts alone, no ground is looked through for impacts.
         let impacts = mapped && spectrum.intensity_mm_h > 0.0;
         let reach_m = if impacts { settings.distance_m } else { 0.0 };

@@ -23,7 +23,7 @@ fn spectrum(rain: f64) -> Spectrum {
 }
 
 /// Looking along −z, half as high as wide.
-fn view(focal_px: f64, exposure_s: f64) -> RainViewVolume {
+pub(crate) fn view(focal_px: f64, exposure_s: f64) -> RainViewVolume {
     let plane = |x: f32, y: f32, z: f32| Vec3::new(x, y, z).normalize().extend(0.0);
     RainViewVolume {
         eye_m: DVec3::new(7.3, 1.7, -104.5),

@@ -16,6 +16,7 @@ mod gusts;
 mod hash;
 mod height_field;
 mod lattice;
+mod lead;
 mod lens;
 mod light;
 mod lightning;

@@ -63,7 +63,7 @@ fn with_and_without(test: &mut TestApp, of: Of) -> [RgbImage; 2] {
 }
 
 /// Pixels of a rectangle in which two pictures differ.
-fn changed([with, without]: &[RgbImage; 2], [x, y, width, height]: [u32; 4]) -> usize {
+pub(crate) fn changed([with, without]: &[RgbImage; 2], [x, y, width, height]: [u32; 4]) -> usize {
     let [a, b] = [with, without].map(|picture| part(picture, x, y, width, height));
     let off = |(a, b): &(&image::Rgb<u8>, &image::Rgb<u8>)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2);
     a.pixels().zip(b.pixels()).filter(off).count()
@@ -76,10 +76,14 @@ fn light([with, without]: &[RgbImage; 2]) -> f64 {
     with.pixels().zip(without.pixels()).map(off).sum()
 }
 
+fn scene(deferred: bool) -> (TestApp, Entity) {
+    screened(SIZE, deferred)
+}
+
 /// Level dark ground in a downpour that nothing gets wet by, and before the left half of the view an opaque screen so near
 /// that nothing falls before it.
-fn scene(deferred: bool) -> (TestApp, Entity) {
-    let mut test = TestApp::new(SIZE, true);
+pub(crate) fn screened(size: [u32; 2], deferred: bool) -> (TestApp, Entity) {
+    let mut test = TestApp::new(size, true);
     world::without_ground(test.world());
     // What is added to a picture is then added to its linear light.
     let camera = test.camera;
@@ -245,7 +249,7 @@ fn rows() -> Vec<Row> {
     ]
 }
 
-fn set_viewport(camera: &mut EntityWorldMut, rectangle: Option<[u32; 4]>) {
+pub(crate) fn set_viewport(camera: &mut EntityWorldMut, rectangle: Option<[u32; 4]>) {
     if let Some(mut own) = camera.get_mut::<Camera>() {
         own.viewport = rectangle.map(|[x, y, width, height]| Viewport {
             physical_position: UVec2::new(x, y),

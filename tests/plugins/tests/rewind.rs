@@ -1,11 +1,13 @@
 //! The picture after a jump back in time is the picture of then.
 
 use bevy::prelude::*;
+use rain_core::rainfall::DropChoice;
 use rain_plugins::prelude::*;
+use rain_plugins::rainfall::RainViewFrame;
 use rain_plugins::surface::WaterLevels;
 use rain_plugins::waves::PuddleWaves;
 use test_support::app::{FRAME, TestApp};
-use test_support::gpu;
+use test_support::{gpu, world};
 
 use crate::scenes::{depth, difference, hollow_at, rain};
 
@@ -142,4 +144,90 @@ fn waves_are_saved_with_their_foot_and_go_on_bit_for_bit() {
         test.world().resource::<PuddleWaves>().tile().is_calm(),
         "the water is still"
     );
+}
+
+/// Rain over level ground in gusts of wind.
+fn gusty() -> TestApp {
+    let mut test = TestApp::new([96, 54], true);
+    world::ground(test.world());
+    test.world().spawn((
+        Weather {
+            wind_m_s: Vec3::new(4.0, 0.0, 1.0),
+            ..Weather::rain(40.0)
+        },
+        Gusts::default(),
+    ));
+    test.frames(3, FRAME);
+    test.leap(2);
+    test
+}
+
+/// What the view's drops are chosen from: where each class stands, how it moves, which are drawn.
+fn choice(test: &mut TestApp) -> DropChoice {
+    let camera = test.camera;
+    let frame = test.world().get::<RainViewFrame>(camera).expect("a rain view");
+    frame.choice.clone().expect("it rains")
+}
+
+#[test]
+fn rain_runs_backwards_frame_by_frame_as_it_came() {
+    if !gpu::available() {
+        return;
+    }
+    let mut test = gusty();
+    let mut frames = Vec::new();
+    for _ in 0..10 {
+        test.frames(1, FRAME);
+        let saved = RainSnapshot::save(test.world()).expect("can be written");
+        frames.push((saved, choice(&mut test), test.picture()));
+    }
+    let moved = difference(&frames[0].2, &frames[9].2);
+    assert!(moved.share > 0.02 && frames[0].1 != frames[9].1, "it rains: {moved:?}");
+    for (saved, then, picture) in frames.iter().rev() {
+        saved.restore(test.world()).expect("fits");
+        test.frames(1, std::time::Duration::ZERO);
+        assert!(choice(&mut test) == *then, "other drops than then");
+        let found = difference(picture, &test.picture());
+        assert!(found.share == 0.0, "{found:?}");
+    }
+    // And forwards again from there.
+    for (_, then, _) in &frames[1..] {
+        test.frames(1, FRAME);
+        assert!(choice(&mut test) == *then, "other drops than then");
+    }
+}
+
+#[test]
+fn in_slow_motion_every_fourth_frame_is_one_of_the_usual_ones() {
+    if !gpu::available() {
+        return;
+    }
+    // A quarter of it is a whole number of nanoseconds.
+    let frame = std::time::Duration::from_millis(16);
+    let [usual, slow] = [1_u8, 4].map(|slower| {
+        let mut test = gusty();
+        test.world()
+            .resource_mut::<Time<Virtual>>()
+            .set_relative_speed(1.0 / f32::from(slower));
+        let mut choices = Vec::new();
+        for _ in 0..6 * slower {
+            test.frames(1, frame);
+            choices.push(choice(&mut test));
+        }
+        choices
+    });
+    for (step, usual) in usual.iter().enumerate() {
+        assert!(slow[4 * step + 3] == *usual, "frame {step}");
+    }
+    // In between it goes on by a quarter of the way each time.
+    let height = |choice: &DropChoice| choice.motion.offset_m[8].y;
+    let ways: Vec<f64> = slow.windows(2).map(|w| height(&w[1]) - height(&w[0])).collect();
+    let usual_way = height(&usual[1]) - height(&usual[0]);
+    assert!(usual_way < -0.05, "{usual_way}");
+    for way in ways {
+        assert!(
+            (way / (0.25 * usual_way) - 1.0).abs() < 0.02,
+            "{way} m of {usual_way} m"
+        );
+    }
 }

@@ -43,8 +43,15 @@ impl TestApp {
     /// weather yet.
     #[must_use]
     pub fn new(size: [u32; 2], rain: bool) -> Self {
+        Self::with(size, rain, |_| {})
+    }
+
+    /// As [`new`](Self::new), with plugins of the host's own.
+    #[must_use]
+    pub fn with(size: [u32; 2], rain: bool, add: impl FnOnce(&mut App)) -> Self {
         let mut app = App::new();
         app.add_plugins(headless::plugins());
+        add(&mut app);
         if rain {
             app.add_plugins(RainPlugins);
             // Half of the default's side: these scenes are small, and each step works on every texel.
@@ -98,12 +105,20 @@ impl TestApp {
     /// # Panics
     /// When the picture does not come back.
     pub fn picture_of(&mut self, target: &Handle<Image>) -> RgbImage {
+        self.picture_after(target, Duration::ZERO)
+    }
+
+    /// What `target` shows in one more frame that is this long.
+    ///
+    /// # Panics
+    /// When the picture does not come back.
+    pub fn picture_after(&mut self, target: &Handle<Image>, frame: Duration) -> RgbImage {
         self.app.insert_resource(Pictured::default());
         self.world()
             .spawn(Screenshot::image(target.clone()))
             .observe(|done: On<ScreenshotCaptured>, mut out: ResMut<Pictured>| out.0 = Some(done.image.clone()));
-        for _ in 0..PATIENCE {
-            self.frames(1, Duration::ZERO);
+        for tries in 0..PATIENCE {
+            self.frames(1, if tries == 0 { frame } else { Duration::ZERO });
             if let Some(image) = self.world().resource_mut::<Pictured>().0.take() {
                 return image.try_into_dynamic().expect("an 8-bit picture").to_rgb8();
             }
