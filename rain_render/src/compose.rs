@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use rain_core::haze::{FIRST_RATE_MM_H, FOG_TABLE_END_M, FOG_TABLE_KNOTS, RATE_KNOTS};
 use rain_core::optics::{BOW_KNOTS, BOW_SPAN_DEG, BOW_STEP_DEG};
 use rain_core::rainfall::{
-    FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, RANGE_CAP_M, SOFT_EDGE,
+    FADE_END, FAR_BEGIN_M, FAR_HEIGHT, FAR_OPACITY, FAR_PITCH, FAR_SHADE, LEAD_TIME_S, RANGE_CAP_M, SOFT_EDGE,
 };
 use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
@@ -161,6 +161,7 @@ pub fn constants() -> String {
     for (name, value) in [
         ("RAIN_RANGE_CAP_M", RANGE_CAP_M),
         ("RAIN_FADE_END", FADE_END),
+        ("RAIN_LEAD_TIME_S", LEAD_TIME_S),
         ("RAIN_SOFT_EDGE", f64::from(SOFT_EDGE)),
         ("RAIN_BUILDING_HEIGHT_M", BUILDING_HEIGHT_M),
         ("RAIN_DEEPEST_PUDDLE_M", DEEPEST_PUDDLE_M),

@@ -89,8 +89,10 @@ fn streak_of(record: DropRecord) -> Streak {
     var out = Streak(vec4<f32>(0.0), vec3<f32>(0.0), 0u, vec3<f32>(0.0), 0u);
 
     let reach = min(view.kappa * rain_visible_range(diameter_mm, view.focal, view.exposure), RAIN_RANGE_CAP_M);
+    // A drop that the eye has nearly met in the exposure would be a panel across the picture.
+    let eye_path = view.lead.xyz * (-view.exposure / RAIN_LEAD_TIME_S);
     let weight = presence
-        * rain_ramp(0.1, 0.2, length(p))
+        * rain_ramp(0.1, 0.2, rain_to_segment(p, eye_path))
         * (1.0 - rain_ramp(0.8 * reach, RAIN_FADE_END * reach, rain_to_segment(p, view.lead.xyz)));
     let before = p - k.velocity.xyz * view.exposure;
     var head = view.clip_from_eye * vec4<f32>(p, 1.0);

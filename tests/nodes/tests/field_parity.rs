@@ -1,6 +1,6 @@
 //! The drops that the GPU projects are the CPU's: places, diameters, speeds, and which of them are drawn.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use rain_core::rainfall::{
     CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, DropChoice, FADE_END, FieldMotion, Lamp,
     RainViewVolume, SizeClass, Spectrum, terminal_velocity, visible_range_m,
@@ -222,6 +222,37 @@ fn projected_drops_are_where_the_cpu_puts_them_and_another_seed_is_found() {
         misplaced_by_another_seed * 100 > compared * 99,
         "{misplaced_by_another_seed} of {compared}"
     );
+}
+
+#[test]
+fn what_a_fast_eye_has_nearly_met_is_not_drawn() {
+    let Some(gpu) = device() else { return };
+    let pipelines = RainfallGpu::new(&gpu.device);
+    let spectrum = Spectrum::new(Distribution::MarshallPalmer, 100.0).expect("a spectrum");
+    let view = FieldView {
+        eye_velocity_m_s: DVec3::new(0.0, 0.0, -36.0),
+        ..FieldView::default()
+    };
+    let path = view.eye_velocity_m_s.as_vec3() * -view.exposure_s;
+    let (mut met, mut drawn, mut widest) = (0, 0, 0.0_f32);
+    for seed in 0..4 {
+        let container = view.container(seed, &spectrum);
+        let streaks = view.streaks(&gpu, &pipelines, seed, &container);
+        for (record, streak) in container.records.iter().zip(&streaks) {
+            let p = record.position(seed, &container.classes);
+            let nearest = p.distance(path * (p.dot(path) / path.length_squared()).clamp(0.0, 1.0));
+            if nearest < 0.099 {
+                met += 1;
+                assert_eq!(streak.shape[2], 0.0, "the eye passes a drop at {p}");
+            } else if streak.shape[2] != 0.0 {
+                drawn += 1;
+                widest = widest.max(2.0 * streak.shape[2].abs());
+            }
+        }
+    }
+    assert!(met > 20 && drawn > 10_000, "{met} met, {drawn} drawn");
+    // The largest drops are 8 mm wide; half of a streak may be as near as the near plane.
+    assert!(widest < view.focal_px() * 8e-3 / 0.06, "{widest} px");
 }
 
 #[test]
