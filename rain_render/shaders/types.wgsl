@@ -70,8 +70,10 @@ struct RainfallView {
     sun_direction: vec4<f32>,
     // Illuminance of the sun, exposed; w unused.
     sun: vec4<f32>,
-    // How far the container reaches ahead of the eye, m; w: height of the eye, m.
+    // How far the container reaches ahead of the eye, or across a view without perspective, m; w: height of the eye, m.
     lead: vec4<f32>,
+    // From where light is seen to the eye, m: 0, or far back along the rays of a view without perspective; w: 1 in such a view.
+    rays: vec4<f32>,
     // A drop's size over its own by distance d: x + y d + z d2; w: d for a metre.
     size: vec4<f32>,
     // Corner and size of the view in the target, px.
@@ -150,7 +152,8 @@ struct RainfallChoice {
     exposure: f32,
     // Rows of cells of all classes.
     rows: u32,
-    pad_a: u32,
+    // 1: a view without perspective.
+    parallel: u32,
     pad_b: u32,
     pad_c: u32,
     classes: array<ChoiceClass, 12>,

@@ -73,6 +73,7 @@ fn volume() -> RainViewVolume {
         solid_angle_sr: 4.0 * ratio.asin(),
         exposure_s: EXPOSURE_S,
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 

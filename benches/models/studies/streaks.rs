@@ -117,6 +117,7 @@ fn volume() -> RainViewVolume {
         solid_angle_sr: 1.7,
         exposure_s: 1.0 / 60.0,
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 

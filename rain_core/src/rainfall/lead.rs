@@ -21,7 +21,7 @@ impl LeadVolume {
     pub(super) fn of(view: &RainViewVolume) -> Option<Self> {
         let lead = lead_m(view.eye_velocity_m_s);
         let lead_m = lead.length();
-        if lead_m < 1e-3 {
+        if lead_m < 1e-3 || view.parallel.is_some() {
             return None;
         }
         let corners = corners(&view.side_planes)?;
@@ -66,8 +66,18 @@ impl LeadVolume {
     }
 }
 
+/// The segment from the eye that a view's drops are counted from: across it where it has no perspective, else ahead of a fast
+/// eye. Units: m.
+pub(super) fn lead_of(view: &RainViewVolume) -> DVec3 {
+    match view.parallel {
+        Some(parallel) if parallel.across_m.is_finite() => parallel.across_m,
+        Some(_) => DVec3::ZERO,
+        None => lead_m(view.eye_velocity_m_s),
+    }
+}
+
 /// How far ahead a view reaches that moves. Units: m.
-pub(super) fn lead_m(eye_velocity_m_s: DVec3) -> DVec3 {
+fn lead_m(eye_velocity_m_s: DVec3) -> DVec3 {
     if eye_velocity_m_s.is_finite() {
         (eye_velocity_m_s * LEAD_TIME_S).clamp_length_max(LEAD_CAP_M)
     } else {

@@ -41,8 +41,8 @@ pub use class_weights::ClassWeights;
 pub use classes::{CLASS_CELL_M, CLASS_COUNT, CLASS_EDGES_MM, CLASS_SPEEDS_M_S, SizeClass, visible_range_m};
 pub use column::{ColumnDrop, column_drop, fract};
 pub use container::{
-    ClassPlacement, Container, DrawRange, DropRecord, FADE_END, LEAD_CAP_M, LEAD_TIME_S, RANGE_CAP_M, RainViewVolume,
-    TURN_CAP_RAD, Thinning, expected_drops, quality_for_budget,
+    ClassPlacement, Container, DrawRange, DropRecord, FADE_END, LEAD_CAP_M, LEAD_TIME_S, ParallelView, RANGE_CAP_M,
+    RainViewVolume, TURN_CAP_RAD, Thinning, expected_drops, quality_for_budget,
 };
 pub use detail::DetailLaw;
 pub use drop_sizes::{DropSizes, MAX_BLEND, RainKind, SizeLaw, UnknownRainKind};

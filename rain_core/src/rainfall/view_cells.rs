@@ -4,9 +4,9 @@
 use glam::{DVec3, IVec3, UVec3, Vec3, Vec4};
 
 use super::classes::{CLASS_COUNT, SizeClass};
-use super::container::{CELL_BIAS, ClassPlacement, DrawRange, FADE_END, RainViewVolume, TURN_CAP_RAD};
+use super::container::{CELL_BIAS, ClassPlacement, FADE_END, RainViewVolume, TURN_CAP_RAD};
 use super::field::{FieldMotion, LatticeEye};
-use super::lead::lead_m;
+use super::lead::lead_of;
 use super::spectrum::Spectrum;
 use crate::error::clamped;
 
@@ -48,7 +48,7 @@ fn moved_out(view: &RainViewVolume, streak_m: Vec3, furthest_m: f32) -> [Vec4; 4
 pub struct ViewCells {
     /// By class.
     pub classes: [ClassCells; CLASS_COUNT],
-    /// Distances count from the segment between the eye and this, ahead of a fast one. Units: m.
+    /// Distances count from the segment between the eye and this, ahead of a fast one, or across a view without perspective. Units: m.
     pub lead_m: Vec3,
 }
 
@@ -59,13 +59,12 @@ impl ViewCells {
     /// Error: none is missing; the blocks hold others as well, which are not within reach or outside two planes together.
     #[must_use]
     pub fn new(spectrum: &Spectrum, motion: &FieldMotion, view: &RainViewVolume, kappa: f64, anywhere: bool) -> Self {
-        let range = DrawRange::of(view, kappa);
         let eye_velocity = if view.eye_velocity_m_s.is_finite() {
             view.eye_velocity_m_s
         } else {
             DVec3::ZERO
         };
-        let lead_m = lead_m(eye_velocity).as_vec3();
+        let lead_m = lead_of(view).as_vec3();
         let raining = (spectrum.n0_per_m3_mm > 0.0 || anywhere) && kappa > 0.0;
         let sees = !view.side_planes.iter().any(|plane| plane.is_nan()) && !view.exposure_s.is_nan();
         let classes = core::array::from_fn(|k| {
@@ -76,7 +75,7 @@ impl ViewCells {
             };
             let relative = placement.velocity_m_s - eye_velocity.as_vec3();
             let cell_m = class.cell_m as f32;
-            let reach_m = (FADE_END * range.at(class.max_mm)) as f32;
+            let reach_m = (FADE_END * view.drawn_m(kappa, class.max_mm)) as f32;
             let streak_m = relative * view.exposure_s as f32;
             let sides = moved_out(view, streak_m, reach_m + lead_m.length());
             // A little more, for rounding.
@@ -100,7 +99,7 @@ impl ViewCells {
                     UVec3::ZERO
                 },
                 reach_m,
-                least_reach_m: (FADE_END * (1.0 - 1e-5) * range.at(class.min_mm)) as f32,
+                least_reach_m: (FADE_END * (1.0 - 1e-5) * view.drawn_m(kappa, class.min_mm)) as f32,
                 sides,
             }
         });
@@ -218,6 +217,7 @@ mod tests {
                 solid_angle_sr: 1.0,
                 exposure_s: 0.02,
                 turn_rad: f64::from(turn),
+                parallel: None,
             };
             let streak = Vec3::new(0.05 * random(), -0.15 + 0.05 * random(), 0.05 * random());
             let sides = moved_out(&view, streak, furthest);

@@ -173,7 +173,8 @@ pub(crate) fn fill_cards(
         });
         let raining = spectrum.intensity_mm_h > 0.0;
         let closed_in = air.closed_in == Some(entity);
-        let mut skip = not_drawn(&view, camera, projection, raining, closed_in);
+        let supported = matches!(projection, Projection::Perspective(_));
+        let mut skip = not_drawn(&view, camera, supported, raining, closed_in);
         if skip.is_none_or(|reason| reason == SkipReason::NoRain)
             && (!view.draws_cards(*software) || settings.lattice.max_cards == 0)
         {

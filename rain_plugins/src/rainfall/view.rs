@@ -7,8 +7,8 @@ use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
 use rain_core::rainfall::{
-    Container, DetailLaw, DropChoice, FADE_END, Follow, FollowSettings, LEAD_CAP_M, RANGE_CAP_M, RainViewVolume,
-    RateLadder, Spectrum, UnevenRain, expected_drops, quality_for_budget,
+    Container, DetailLaw, DropChoice, FADE_END, Follow, FollowSettings, LEAD_CAP_M, ParallelView, RANGE_CAP_M,
+    RainViewVolume, RateLadder, Spectrum, UnevenRain, expected_drops, quality_for_budget,
 };
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
@@ -73,6 +73,10 @@ pub struct RainView {
     /// `Some(false)`: all streaks are even strips. `None`: on a GPU, not on a software adapter, where a picture full of wide
     /// streaks takes ten times as long.
     pub near_patterns: Option<bool>,
+    /// Orthographic views only: how far ahead of the camera the middle of the drawn rain lies, which reaches 15 m before and
+    /// behind it. Units: m. Domain: [−10⁴, 10⁴]. `None`: just before the ground at height 0 that the picture's lower rim sees, so that
+    /// rain is even all over it; 10 m where it sees none.
+    pub focus_m: Option<f32>,
 }
 
 impl Default for RainView {
@@ -88,6 +92,7 @@ impl Default for RainView {
             cards: None,
             far_rain: None,
             near_patterns: None,
+            focus_m: None,
         }
     }
 }
@@ -121,6 +126,8 @@ impl RainView {
             f64::from(MAX_STREAK_BUDGET),
             "0 to 4000000",
         )?;
+        let focus = f64::from(self.focus_m.unwrap_or_default());
+        in_range("focus_m", focus, -1e4, 1e4, "-10000 to 10000 m")?;
         if let Some(container) = self.container {
             container.validated()?;
         }
@@ -172,6 +179,8 @@ struct QualityOf {
     spectrum: Spectrum,
     focal_px: f64,
     solid_angle_sr: f64,
+    /// Of a view without perspective; its height follows from the focal length.
+    width_m: f64,
     exposure_s: f64,
     budget: u32,
     /// How much more the view holds because it moves, in steps of 3 %.
@@ -348,18 +357,25 @@ pub(crate) fn choose_drops(
         });
         let closed_in = air.closed_in == Some(entity);
         let raining = spectrum.intensity_mm_h > 0.0;
-        let skip = not_drawn(&settings, camera, projection, raining, closed_in);
+        let orthographic = matches!(projection, Projection::Orthographic(_));
+        let supported = orthographic || matches!(projection, Projection::Perspective(_));
+        let skip = not_drawn(&settings, camera, supported, raining, closed_in);
         if let Some(reason) = skip {
             report.skipped(PassName::Rainfall, reason);
             continue;
         }
         let clip_from_view = projection.get_clip_from_view();
-        let volume = view_volume(clip_from_view, size, transform, &motion, settings.exposure_s);
+        let volume = if orthographic {
+            parallel_volume(clip_from_view, size, transform, &motion, &settings)
+        } else {
+            view_volume(clip_from_view, size, transform, &motion, settings.exposure_s)
+        };
         let budget = settings.budget(*software, &share);
         let of = QualityOf {
             spectrum,
             focal_px: volume.focal_px,
             solid_angle_sr: volume.solid_angle_sr,
+            width_m: volume.parallel.map_or(0.0, |parallel| parallel.across_m.length()),
             exposure_s: volume.exposure_s,
             budget,
             growth: (volume.lead_growth(LEAD_SAMPLE_M).ln() / LEAD_STEP).round() as i32,
@@ -384,7 +400,10 @@ pub(crate) fn choose_drops(
             size_px: size,
         });
 
-        let follow = settings.container.map(|region| {
+        // Both thin by the distance from an eye.
+        let container = settings.container.filter(|_| !orthographic);
+        let detail = settings.detail.filter(|_| !orthographic);
+        let follow = container.map(|region| {
             let ahead = rotation * Vec3::NEG_Z;
             let heading = f64::from(ahead.x).atan2(f64::from(-ahead.z));
             let eye = position.as_dvec3();
@@ -405,7 +424,7 @@ pub(crate) fn choose_drops(
             most_drops: 1024 + (2.0 * f64::from(budget).min(expected_drops(&spectrum, &volume, kappa))) as u32,
             uneven: uneven.clone(),
             region: follow,
-            detail: settings.detail,
+            detail,
         });
         frame.motion = *motion;
         frame.shutter = Some(Shutter {
@@ -413,8 +432,8 @@ pub(crate) fn choose_drops(
             contrast: settings.contrast,
             kappa: kappa as f32,
             soft_m: settings.soft_m,
-            patterned: settings.draws_patterns(*software),
-            detail: settings.detail,
+            patterned: settings.draws_patterns(*software) && !orthographic,
+            detail,
         });
     }
     if !any {
@@ -433,7 +452,7 @@ impl RainViewFrame {
 pub(super) fn not_drawn(
     settings: &RainView,
     camera: &Camera,
-    projection: &Projection,
+    supported: bool,
     raining: bool,
     closed_in: bool,
 ) -> Option<SkipReason> {
@@ -444,7 +463,7 @@ pub(super) fn not_drawn(
         Some(SkipReason::Disabled)
     } else if !raining {
         Some(SkipReason::NoRain)
-    } else if !matches!(projection, Projection::Perspective(_)) {
+    } else if !supported {
         Some(SkipReason::Unsupported)
     } else if closed_in {
         Some(SkipReason::Indoors)
@@ -481,12 +500,80 @@ pub(crate) fn view_volume(
         exposure_s: f64::from(exposure_s),
         // A long lens that turns by half its view would hold twice as many drops as there is room for.
         turn_rad: f64::from((motion.turn_rad_s.length() * exposure_s).min(0.25 * tx.min(ty))),
+        parallel: None,
+    }
+}
+
+/// How far ahead of an orthographic camera the middle of the drawn rain lies, so that all of the picture has as much of it before the
+/// ground at height 0: before what the lower rim sees. 10 m where there is no ground ahead. Units: m.
+fn focus_m(height_m: f32, ahead: Vec3, half_height_m: f32) -> f32 {
+    let to_ground = -height_m / ahead.y;
+    if !(0.0..1e4).contains(&to_ground) {
+        return 10.0;
+    }
+    let nearest = to_ground - half_height_m * (1.0 - ahead.y * ahead.y).max(0.0).sqrt() / ahead.y.abs();
+    // From here on drops fade.
+    let clear = 0.8 * RANGE_CAP_M as f32;
+    (nearest - clear).max(0.5 * nearest.max(0.0))
+}
+
+/// An orthographic view as the container needs it.
+fn parallel_volume(
+    clip_from_view: Mat4,
+    size: UVec2,
+    transform: &GlobalTransform,
+    motion: &ViewMotion,
+    settings: &RainView,
+) -> RainViewVolume {
+    let (_, rotation, position) = transform.to_scale_rotation_translation();
+    let (sx, sy) = (clip_from_view.x_axis.x, clip_from_view.y_axis.y);
+    // Half of the picture, and its middle, which need not be before the camera.
+    let half = Vec2::new(1.0 / sx, 1.0 / sy).abs();
+    let middle = -clip_from_view.w_axis.truncate().truncate() / Vec2::new(sx, sy);
+    let middle = position + rotation * middle.extend(0.0);
+    let [right, up, ahead] = [Vec3::X, Vec3::Y, Vec3::NEG_Z].map(|axis| rotation * axis);
+    let focus = settings.focus_m.unwrap_or_else(|| focus_m(middle.y, ahead, half.y));
+    let eye = middle + ahead * focus - right * half.x;
+    RainViewVolume {
+        eye_m: eye.as_dvec3(),
+        eye_velocity_m_s: motion.velocity_m_s,
+        side_planes: [
+            right.extend(0.0),
+            (-right).extend(2.0 * half.x),
+            up.extend(half.y),
+            (-up).extend(half.y),
+        ],
+        focal_px: f64::from(0.5 * size.y as f32 / half.y) * RANGE_CAP_M,
+        solid_angle_sr: 0.0,
+        exposure_s: f64::from(settings.exposure_s),
+        turn_rad: f64::from(motion.turn_rad_s.length() * settings.exposure_s),
+        parallel: Some(ParallelView {
+            across_m: (right * 2.0 * half.x).as_dvec3(),
+            height_m: f64::from(2.0 * half.y),
+            ahead: ahead.as_dvec3(),
+        }),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_orthographic_view_is_focused_before_the_ground() {
+        // Straight down from 50 m; from the side at 30 degrees, where the lower rim sees the ground 8.7 m nearer; from near; level.
+        let slope = Vec3::new(0.0, -0.5, -0.75_f32.sqrt());
+        for (height, ahead, expected) in [
+            (50.0, Vec3::NEG_Y, 38.0),
+            (30.0, slope, 60.0 - 8.66 - 12.0),
+            (6.0, Vec3::NEG_Y, 3.0),
+            (2.0, Vec3::NEG_Z, 10.0),
+            (2.0, Vec3::Y, 10.0),
+        ] {
+            let found = focus_m(height, ahead, 5.0);
+            assert!((found - expected).abs() < 0.01, "{height} {ahead}: {found}");
+        }
+    }
 
     #[test]
     fn a_view_that_turns_says_so_but_by_no_more_than_a_quarter_of_itself() {

@@ -442,8 +442,19 @@ pub(super) fn prepare_rain(
         let (Some(shutter), Some(choice)) = (rain.shutter, &rain.choice) else {
             continue;
         };
-        let panes = rain.panes.seen_from(eye);
-        let soft_m = if scene_depth.is_some() { shutter.soft_m } else { 0.0 };
+        // Without perspective drops are placed from amid them, and neither their distance nor a way to the eye is told.
+        let parallel = choice.view.parallel;
+        let from = choice.view.eye_m.as_vec3();
+        let panes = if parallel.is_some() {
+            Vec::new()
+        } else {
+            rain.panes.seen_from(eye)
+        };
+        let soft_m = if scene_depth.is_some() && parallel.is_none() {
+            shutter.soft_m
+        } else {
+            0.0
+        };
         let draws = StreakDraws {
             coverage: rain.masks.is_some(),
             behind: !panes.is_empty(),
@@ -454,21 +465,23 @@ pub(super) fn prepare_rain(
             .prepare_pipelines(device, view.target_format, msaa.samples(), draws);
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
         let (now, before) = rain.motion.view_matrices(rotation, shutter.exposure_s);
-        let lamps = rain.lamps.seen_from(eye, camera.exposure);
+        let lamps = rain.lamps.seen_from(from, camera.exposure);
+        let moved = Mat4::from_translation(from - eye);
         let input = RainfallInput {
             drops: Drops::Chosen(choice),
-            clip_from_eye: view.clip_from_view * now,
-            clip_from_eye_before: view.clip_from_view * before,
-            eye_height_m: eye.y,
+            clip_from_eye: view.clip_from_view * now * moved,
+            clip_from_eye_before: view.clip_from_view * before * moved,
+            eye_height_m: from.y,
             eye_velocity_m_s: rain.motion.velocity_m_s.as_vec3(),
             viewport_px: Vec4::from_array(view.viewport.as_vec4().to_array()),
             focal_px: choice.view.focal_px as f32,
-            near_m: near,
+            parallel,
+            near_m: if parallel.is_some() { 0.0 } else { near },
             shutter: rain_render::rainfall::Shutter { soft_m, ..shutter },
             lighting: view_lighting(&scene, environment, camera.exposure),
             lamps: &lamps,
             panes: &panes,
-            cover: cover_at(eye.as_dvec3()),
+            cover: cover_at(choice.view.eye_m),
         };
         let textures = RainfallTextures {
             cover: cover_image.map(|i| -> &wgpu::TextureView { &i.texture_view }),

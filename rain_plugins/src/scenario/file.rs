@@ -384,6 +384,9 @@ pub struct Camera {
     pub interpolation: Interpolation,
     /// Rides on a vehicle instead. Default: none.
     pub attached: Option<Attached>,
+    /// Height of the picture of a view without perspective, whatever the keys' fields of view. Units: m. Domain: [0.1, 1000].
+    /// Default: none, a view with perspective.
+    pub orthographic_m: Option<f64>,
 }
 
 /// A camera pose at a time.

@@ -396,6 +396,12 @@ fn values_out_of_domain_name_the_field() {
             "camera",
             "one of them",
         ),
+        (
+            "interpolation: CatmullRom",
+            "orthographic_m: 0",
+            "camera.orthographic_m",
+            "0.1 to 1000 m",
+        ),
         ("contrast: 6", "contrast: 0.5", "rain.contrast", "1 to 32"),
         (
             "streak_budget: 100000",

@@ -177,6 +177,7 @@ impl CameraPath {
             keys,
             interpolation,
             attached,
+            ..
         } = &scenario.camera;
         if let Some(attached) = attached
             && let Some(vehicle) = scenario.vehicles.iter().find(|v| v.name == attached.vehicle)

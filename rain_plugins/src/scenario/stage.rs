@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bevy::asset::{LoadState, RecursiveDependencyLoadState, RenderAssetUsages};
 use bevy::camera::primitives::Aabb;
-use bevy::camera::{Exposure, Hdr, RenderTarget};
+use bevy::camera::{Exposure, Hdr, RenderTarget, ScalingMode};
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::gltf::GltfAssetLabel;
@@ -256,6 +256,19 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
         water: images.add(mask_image(MaskKind::Surface, width, height)),
     });
     let brightness = sky.zenith_luminance_cd_m2 as f32;
+    let projection = match scenario.camera.orthographic_m {
+        Some(height_m) => Projection::Orthographic(OrthographicProjection {
+            scaling_mode: ScalingMode::FixedVertical {
+                viewport_height: height_m as f32,
+            },
+            ..OrthographicProjection::default_3d()
+        }),
+        None => Projection::Perspective(PerspectiveProjection {
+            near: 0.05,
+            aspect_ratio: width as f32 / height as f32,
+            ..default()
+        }),
+    };
     let mut camera = world.spawn((
         Name::new("camera"),
         Camera3d::default(),
@@ -282,11 +295,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             intensity: brightness,
             ..default()
         },
-        Projection::Perspective(PerspectiveProjection {
-            near: 0.05,
-            aspect_ratio: width as f32 / height as f32,
-            ..default()
-        }),
+        projection,
         Transform::default(),
     ));
     if environment.bloom {

@@ -548,6 +548,9 @@ fn environment(environment: &Environment) -> Checked {
 }
 
 fn camera(camera: &Camera, vehicles: &[Vehicle]) -> Checked {
+    if let Some(height_m) = camera.orthographic_m {
+        number("camera.orthographic_m", height_m, 0.1, 1000.0, "m")?;
+    }
     if let Some(attached) = &camera.attached {
         if !camera.keys.is_empty() {
             return problem("camera", "keys and attached", "one of them");

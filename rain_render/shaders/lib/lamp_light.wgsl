@@ -22,13 +22,18 @@ fn rain_lamp_falloff(lamp: LampParams, point: vec3<f32>) -> f32 {
 // Radiance that a drop at a point sends to the eye from a lamp. Error: 1e-3 relative to the CPU's, whose arc cosine
 // is exact.
 fn rain_lamp_radiance(lamp: LampParams, point: vec3<f32>) -> vec3<f32> {
+    return rain_lamp_radiance_along(lamp, point, normalize(point));
+}
+
+// The same where it is seen along another direction, unit.
+fn rain_lamp_radiance_along(lamp: LampParams, point: vec3<f32>, seen: vec3<f32>) -> vec3<f32> {
     let falloff = rain_lamp_falloff(lamp, point);
     if (falloff <= 0.0) {
         return vec3<f32>(0.0);
     }
     let way = point - lamp.place.xyz;
     let towards = way * inverseSqrt(max(dot(way, way), 1e-12));
-    let theta = acos(clamp(-dot(towards, normalize(point)), -1.0, 1.0));
+    let theta = acos(clamp(-dot(towards, seen), -1.0, 1.0));
     let shares = RAIN_DROP_TRANSMITTED * rain_drop_phase(theta) + RAIN_DROP_REFLECTED * 0.0795775;
     return lamp.intensity.rgb * (falloff * shares);
 }

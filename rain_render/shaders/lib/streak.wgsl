@@ -12,6 +12,13 @@ fn rain_visible_range(diameter_mm: f32, focal: f32, exposure: f32) -> f32 {
     return 255.0 * 0.7853982 * d * d * focal / (rain_terminal_velocity(diameter_mm) * exposure);
 }
 
+// How far a diameter is drawn at a quality, m; without perspective wholly or not at all. Error: 3e-3 relative to the CPU's.
+fn rain_drawn(kappa: f32, diameter_mm: f32, focal: f32, exposure: f32, parallel: bool) -> f32 {
+    let range = min(kappa * rain_visible_range(diameter_mm, focal, exposure), RAIN_RANGE_CAP_M);
+    let kept = clamp(10.0 * range / RAIN_RANGE_CAP_M - 9.0, 0.0, 1.0);
+    return select(range, RAIN_RANGE_CAP_M * kept, parallel);
+}
+
 // Distance from p to the segment from the origin to `lead`.
 fn rain_to_segment(p: vec3<f32>, lead: vec3<f32>) -> f32 {
     let square = dot(lead, lead);

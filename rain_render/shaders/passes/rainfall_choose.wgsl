@@ -250,8 +250,8 @@ fn find(run: Run, enlisting: bool, start: vec2<u32>) -> u32 {
             var presence = 1.0;
             if (square > whole || rank > own.ranks.y) {
                 let diameter_mm = rain_diameter_mm(placed.diameter.x, placed.diameter.y, rain_unit(marks.y));
-                let range = rain_visible_range(diameter_mm, choice.focal, choice.exposure);
-                let reach = RAIN_FADE_END * min(choice.kappa * range, RAIN_RANGE_CAP_M);
+                let reach = RAIN_FADE_END
+                    * rain_drawn(choice.kappa, diameter_mm, choice.focal, choice.exposure, choice.parallel != 0u);
                 presence = select(0.0, presence_of(run.k, rank, diameter_mm, place), square <= reach * reach);
             }
             if (THINNED) {

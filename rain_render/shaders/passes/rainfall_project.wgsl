@@ -37,7 +37,7 @@ fn sheltered(p: vec3<f32>, before: vec3<f32>, inverse_speed: f32) -> bool {
 }
 
 fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
-    let from_eye = normalize(place);
+    let from_eye = normalize(place + view.rays.xyz);
     var light: vec3<f32>;
     if (!ENVIRONMENT) {
         light = rain_drop_shine_evenly(view.ambient, view.sun_direction.xyz, view.sun.rgb, from_eye);
@@ -54,7 +54,7 @@ fn drop_radiance(place: vec3<f32>) -> vec3<f32> {
     }
     if (LAMPS) {
         for (var i = 0u; i < view.lamps; i++) {
-            light += rain_lamp_radiance(view.lamp[i], place);
+            light += rain_lamp_radiance_along(view.lamp[i], place, from_eye);
         }
     }
     return light;
@@ -88,11 +88,12 @@ fn streak_of(record: DropRecord) -> Streak {
 
     var out = Streak(vec4<f32>(0.0), vec3<f32>(0.0), 0u, vec3<f32>(0.0), 0u);
 
-    let reach = min(view.kappa * rain_visible_range(diameter_mm, view.focal, view.exposure), RAIN_RANGE_CAP_M);
+    let parallel = view.rays.w > 0.0;
+    let reach = rain_drawn(view.kappa, diameter_mm, view.focal, view.exposure, parallel);
     // A drop that the eye has nearly met in the exposure would be a panel across the picture.
     let eye_path = view.lead.xyz * (-view.exposure / RAIN_LEAD_TIME_S);
     let weight = presence
-        * rain_ramp(0.1, 0.2, rain_to_segment(p, eye_path))
+        * select(rain_ramp(0.1, 0.2, rain_to_segment(p, eye_path)), 1.0, parallel)
         * (1.0 - rain_ramp(0.8 * reach, RAIN_FADE_END * reach, rain_to_segment(p, view.lead.xyz)));
     let before = p - k.velocity.xyz * view.exposure;
     var head = view.clip_from_eye * vec4<f32>(p, 1.0);
@@ -108,7 +109,7 @@ fn streak_of(record: DropRecord) -> Streak {
     } else if (tail.w < near) {
         tail = mix(tail, head, (near - tail.w) / (head.w - tail.w));
     }
-    let distance = max(0.5 * (head.w + tail.w), near);
+    let distance = select(max(0.5 * (head.w + tail.w), near), RAIN_RANGE_CAP_M, parallel);
     let d = min(length(p) * view.size.w, 1.0);
     let larger = view.size.x + d * (view.size.y + d * view.size.z);
     let size = larger * diameter_mm * 1e-3 * view.focal / distance;
@@ -117,7 +118,7 @@ fn streak_of(record: DropRecord) -> Streak {
     let width = max(1.0, size);
     let span = max(1.0, length(b - a) + size);
     // Off the axis a flat picture draws a sphere out to an ellipse.
-    let secant = clamp(length(0.5 * (p + before)) / distance, 1.0, 4.0);
+    let secant = select(clamp(length(0.5 * (p + before)) / distance, 1.0, 4.0), 1.0, parallel);
     let opacity = min(1.0, 0.7853982 * size * size * secant / (width * span));
     let middle = 0.5 * (p + before);
     out.ends = vec4<f32>(a, b);

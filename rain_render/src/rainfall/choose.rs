@@ -481,6 +481,7 @@ fn uniform(asked: &Asked, stage: u32) -> RainfallChoice {
         kappa: choice.kappa as f32,
         focal: choice.view.focal_px as f32,
         exposure: choice.view.exposure_s as f32,
+        parallel: u32::from(choice.view.parallel.is_some()),
         ..RainfallChoice::default()
     };
     if let Some((follow, settings)) = &choice.region {

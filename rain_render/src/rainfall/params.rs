@@ -3,8 +3,8 @@
 use glam::{Mat4, Vec3, Vec4};
 use rain_core::hash::pcg3d;
 use rain_core::rainfall::{
-    CLASS_COUNT, ClassPlacement, Container, DetailLaw, DropChoice, LEAD_CAP_M, LEAD_TIME_S, Lamp, RANGE_CAP_M,
-    SizeClass,
+    CLASS_COUNT, ClassPlacement, Container, DetailLaw, DropChoice, LEAD_CAP_M, LEAD_TIME_S, Lamp, ParallelView,
+    RANGE_CAP_M, SizeClass,
 };
 
 use crate::glass::{self, Pane};
@@ -25,6 +25,9 @@ pub struct Lighting {
     /// Illuminance of the sun, exposed.
     pub sun: Vec3,
 }
+
+/// Light is seen from so far back where rays are parallel: their directions differ by less than a thousandth. Units: m.
+const SEEN_FROM_M: f32 = 1e4;
 
 /// The shutter and how streaks are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,6 +82,9 @@ pub struct RainfallInput<'a> {
     pub viewport_px: Vec4,
     /// Focal length. Units: px.
     pub focal_px: f32,
+    /// A view without perspective, as [`RainViewVolume`](rain_core::rainfall::RainViewVolume) has it: neither fade before the scene, nor panes, nor
+    /// patterns, nor a law of detail.
+    pub parallel: Option<ParallelView>,
     /// Near plane of the projection. Units: m.
     pub near_m: f32,
     /// Shutter and quality.
@@ -111,7 +117,13 @@ impl RainfallInput<'_> {
                 diameter: [class.exp_min as f32, class.exp_span as f32, 0.0, 0.0],
             };
         }
-        let lead = (self.eye_velocity_m_s * LEAD_TIME_S as f32).clamp_length_max(LEAD_CAP_M as f32);
+        let lead = match &self.parallel {
+            Some(parallel) => parallel.across_m.as_vec3(),
+            None => (self.eye_velocity_m_s * LEAD_TIME_S as f32).clamp_length_max(LEAD_CAP_M as f32),
+        };
+        let rays = self.parallel.map_or(Vec4::ZERO, |parallel| {
+            (parallel.ahead.as_vec3() * SEEN_FROM_M).extend(1.0)
+        });
         let (lamp, lamps) = lamps::slots(self.lamps);
         let (pane, panes) = glass::slots(self.panes);
         let size = self.shutter.detail.map(DetailLaw::size_terms);
@@ -125,6 +137,7 @@ impl RainfallInput<'_> {
             sun_direction: self.lighting.sun_direction.extend(0.0).to_array(),
             sun: self.lighting.sun.extend(0.0).to_array(),
             lead: lead.extend(self.eye_height_m).to_array(),
+            rays: rays.to_array(),
             size: size.map_or([1.0, 0.0, 0.0, 0.0], |[even, linear, square]| {
                 [even, linear, square, 1.0 / RANGE_CAP_M as f32]
             }),

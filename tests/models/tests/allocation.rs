@@ -29,6 +29,7 @@ fn view() -> RainViewVolume {
         solid_angle_sr: 1.0,
         exposure_s: 1.0 / 60.0,
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 

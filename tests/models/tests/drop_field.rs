@@ -18,7 +18,7 @@ use crate::check::Worst;
 
 const BAD: [f64; 7] = [f64::NAN, f64::NEG_INFINITY, -1.0, 0.0, 5e-324, 1e300, f64::INFINITY];
 
-fn spectrum(rain: f64) -> Spectrum {
+pub(crate) fn spectrum(rain: f64) -> Spectrum {
     Spectrum::new(Distribution::MarshallPalmer, rain).expect("valid")
 }
 
@@ -39,6 +39,7 @@ pub(crate) fn view(focal_px: f64, exposure_s: f64) -> RainViewVolume {
         solid_angle_sr: 4.0 * f64::asin(0.8 * 0.4 / (1.64_f64 * 1.16).sqrt()),
         exposure_s,
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use rain_core::rainfall::areas::{AreaField, AreaRain, AreaSettings, AreaShape, DensityMap};
 use rain_core::rainfall::{
     Container, DetailLaw, Distribution, DropChoice, DropRecord, Follow, FollowSettings, FollowShape, RateLadder,
-    SizeClass, Spectrum, Threshold, UnevenRain,
+    SizeClass, Spectrum, Threshold, UnevenRain, quality_for_budget,
 };
 use rain_render::rainfall::{Drops, RainfallGpu, RainfallTextures, RainfallViewGpu, encode_project};
 
@@ -107,6 +107,27 @@ fn filled(choice: &DropChoice) -> Container {
 
 fn rain(rate: f64) -> Spectrum {
     Spectrum::new(Distribution::MarshallPalmer, rate).expect("a spectrum")
+}
+
+#[test]
+fn without_perspective_the_gpu_lists_the_drops_of_the_cpu_too() {
+    let Some(gpu) = device() else { return };
+    let pipelines = RainfallGpu::new(&gpu.device);
+    let mut view_gpu = RainfallViewGpu::new(&gpu.device);
+    for (rate, width_m) in [(5.0, 30.0), (25.0, 12.0), (100.0, 4.0)] {
+        let mut view = FieldView {
+            width_m: Some(width_m),
+            ..FieldView::default()
+        };
+        let shown = view.choice(0, &rain(rate)).view;
+        view.kappa = quality_for_budget(&rain(rate), &shown, 8_000.0);
+        let choice = view.choice(0xFEDC_BA98_7654_3210, &rain(rate));
+        let expected = filled(&choice);
+        let found = chosen(&gpu, &pipelines, &mut view_gpu, &view, &choice, false);
+        let drawn = found.records.len();
+        assert!((6_000..12_000).contains(&drawn), "{width_m} m: {drawn} drops");
+        assert_same(&found.records, &expected, 1e-3, 1e-3, &format!("{width_m} m"));
+    }
 }
 
 #[test]

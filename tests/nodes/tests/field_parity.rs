@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use rain_core::rainfall::{
-    CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, DropChoice, FADE_END, FieldMotion, Lamp,
-    RainViewVolume, SizeClass, Spectrum, terminal_velocity, visible_range_m,
+    CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, DropChoice, FADE_END, FieldMotion, Lamp, ParallelView,
+    RANGE_CAP_M, RainViewVolume, SizeClass, Spectrum, terminal_velocity, visible_range_m,
 };
 use rain_render::cover::open_sky;
 use rain_render::glass::Pane;
@@ -27,6 +27,8 @@ pub struct FieldView {
     pub lamps: Vec<Lamp>,
     pub panes: Vec<Pane>,
     pub detail: Option<DetailLaw>,
+    /// Width of the picture of a view without perspective, whose left side the eye is at. Units: m.
+    pub width_m: Option<f32>,
 }
 
 impl Default for FieldView {
@@ -43,6 +45,7 @@ impl Default for FieldView {
             lamps: Vec::new(),
             panes: Vec::new(),
             detail: None,
+            width_m: None,
         }
     }
 }
@@ -54,11 +57,23 @@ pub fn half_pair(word: u32) -> [f32; 2] {
 
 impl FieldView {
     pub fn focal_px(&self) -> f32 {
+        if let Some(width) = self.width_m {
+            return self.size.x / width * RANGE_CAP_M as f32;
+        }
         0.5 * self.size.y / (0.5 * self.fov_y).tan()
     }
 
     /// Infinite reverse-Z, looking along −Z, near plane at 5 cm.
     fn clip_from_eye(&self) -> Mat4 {
+        if let Some(width) = self.width_m {
+            // From 100 m before the eye to 100 m behind it.
+            return Mat4::from_cols(
+                Vec4::new(2.0 / width, 0.0, 0.0, 0.0),
+                Vec4::new(0.0, 2.0 * self.size.x / self.size.y / width, 0.0, 0.0),
+                Vec4::new(0.0, 0.0, 1.0 / 200.0, 0.0),
+                Vec4::new(-1.0, 0.0, 0.5, 1.0),
+            );
+        }
         let f = 1.0 / (0.5 * self.fov_y).tan();
         Mat4::from_cols(
             Vec4::new(f * self.size.y / self.size.x, 0.0, 0.0, 0.0),
@@ -68,8 +83,8 @@ impl FieldView {
         )
     }
 
-    /// What its drops are chosen from at a spectrum.
-    pub fn choice(&self, seed: u64, spectrum: &Spectrum) -> DropChoice {
+    /// The view as drops are chosen for it.
+    fn volume(&self) -> RainViewVolume {
         let ty = (0.5 * self.fov_y).tan();
         let tx = ty * self.size.x / self.size.y;
         let plane = |n: Vec3| n.normalize().extend(0.0);
@@ -86,7 +101,29 @@ impl FieldView {
             solid_angle_sr: 1.0,
             exposure_s: f64::from(self.exposure_s),
             turn_rad: 0.0,
+            parallel: None,
         };
+        self.width_m.map_or(view, |width| {
+            let height = width * self.size.y / self.size.x;
+            RainViewVolume {
+                side_planes: [
+                    Vec4::X,
+                    Vec4::new(-1.0, 0.0, 0.0, width),
+                    Vec4::new(0.0, 1.0, 0.0, 0.5 * height),
+                    Vec4::new(0.0, -1.0, 0.0, 0.5 * height),
+                ],
+                parallel: Some(ParallelView {
+                    across_m: DVec3::X * f64::from(width),
+                    height_m: height.into(),
+                    ahead: DVec3::NEG_Z,
+                }),
+                ..view
+            }
+        })
+    }
+
+    /// What its drops are chosen from at a spectrum.
+    pub fn choice(&self, seed: u64, spectrum: &Spectrum) -> DropChoice {
         let mut motion = FieldMotion::default();
         motion.set_velocity(self.wind_m_s, 1.2041);
         motion.advance(self.seconds);
@@ -94,7 +131,7 @@ impl FieldView {
             seed,
             spectrum: *spectrum,
             motion,
-            view,
+            view: self.volume(),
             kappa: self.kappa,
             most_drops: 1 << 21,
             uneven: None,
@@ -127,6 +164,10 @@ impl FieldView {
             eye_velocity_m_s: self.eye_velocity_m_s.as_vec3(),
             viewport_px: Vec4::new(0.0, 0.0, self.size.x, self.size.y),
             focal_px: self.focal_px(),
+            parallel: match drops {
+                Drops::Chosen(choice) => choice.view.parallel,
+                Drops::Listed(..) => self.volume().parallel,
+            },
             near_m: 0.05,
             shutter: Shutter {
                 exposure_s: self.exposure_s,
@@ -221,6 +262,55 @@ fn projected_drops_are_where_the_cpu_puts_them_and_another_seed_is_found() {
     assert!(
         misplaced_by_another_seed * 100 > compared * 99,
         "{misplaced_by_another_seed} of {compared}"
+    );
+}
+
+#[test]
+fn without_perspective_streaks_are_parallel_and_as_wide_as_their_drops() {
+    let Some(gpu) = device() else { return };
+    let pipelines = RainfallGpu::new(&gpu.device);
+    let spectrum = Spectrum::new(Distribution::MarshallPalmer, 25.0).expect("a spectrum");
+    let view = FieldView {
+        width_m: Some(12.0),
+        kappa: 0.5,
+        ..FieldView::default()
+    };
+    let container = view.container(9, &spectrum);
+    let streaks = view.streaks(&gpu, &pipelines, 9, &container);
+    let scale = view.size.x / 12.0;
+    let (mut drawn, mut wide, mut away) = (0, 0, [0; 2]);
+    for (record, streak) in container.records.iter().zip(&streaks) {
+        let p = record.position(9, &container.classes);
+        let class = SizeClass::new((record.drop & 15) as usize);
+        if streak.shape[2] == 0.0 {
+            continue;
+        }
+        drawn += 1;
+        away[usize::from(p.z > 0.0)] += 1;
+        let velocity = container.classes[(record.drop & 15) as usize].velocity_m_s;
+        let head = Vec2::new(p.x, -p.y) * scale + Vec2::new(0.0, 0.5 * view.size.y);
+        let tail = head - Vec2::new(velocity.x, -velocity.y) * (view.exposure_s * scale);
+        let ends = [
+            streak.ends[0] - head.x,
+            streak.ends[1] - head.y,
+            streak.ends[2] - tail.x,
+            streak.ends[3] - tail.y,
+        ];
+        assert!(ends.iter().all(|off| off.abs() < 0.02), "{ends:?} at {p}");
+        let width = 2.0 * streak.shape[2].abs();
+        let [least, most] = [class.min_mm, class.max_mm].map(|d| (d as f32 * 1e-3 * scale).max(1.0));
+        assert!(
+            width > 0.999 * least && width < 1.001 * most,
+            "{width} px, {least} to {most}"
+        );
+        wide += u32::from(width > 1.0);
+        // Half of the way through the depth range at the eye, whatever lies beside it.
+        assert!((streak.shape[0] - 0.5 - p.z / 200.0).abs() < 1e-5);
+    }
+    assert!(drawn > 3000 && wide == 0, "{drawn} drawn, {wide} wider than a pixel");
+    assert!(
+        away[0] > drawn / 3 && away[1] > drawn / 3,
+        "{away:?} behind the eye's plane and before it"
     );
 }
 

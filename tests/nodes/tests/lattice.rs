@@ -70,6 +70,7 @@ fn cards(textures: &StreakTextureSettings, intensity: f64) -> Vec<Card> {
         solid_angle_sr: 1.0,
         exposure_s: 1.0 / 60.0,
         turn_rad: 0.0,
+        parallel: None,
     };
     let mut cards = Vec::new();
     plan.fill(

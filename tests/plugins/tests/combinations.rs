@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use bevy::camera::Hdr;
 use bevy::camera::visibility::RenderLayers;
+use bevy::camera::{Hdr, ScalingMode};
 use bevy::core_pipeline::oit::OrderIndependentTransparencySettings;
 use bevy::core_pipeline::prepass::background_motion_vectors::NoBackgroundMotionVectors;
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
@@ -33,13 +33,16 @@ struct Settings {
     part: bool,
     /// The screen is on another layer, which the camera sees too.
     layers: bool,
+    /// Of the rain such a view shows single drops.
+    orthographic: bool,
 }
 
 impl Settings {
-    /// Each with each, where Bevy allows it: deferred shading, transparency by pixel take one sample.
+    /// Each with each, where Bevy allows it: deferred shading, transparency by pixel take one sample. Orthographic views with
+    /// each of samples, range, prepass and part.
     fn all(deferred: bool) -> impl Iterator<Item = Self> {
         let bit = |code: u32, at: u32| code >> at & 1 == 1;
-        (0..128).filter_map(move |code| {
+        (0..256).filter_map(move |code| {
             let settings = Self {
                 deferred,
                 four_samples: bit(code, 0),
@@ -49,10 +52,13 @@ impl Settings {
                 sorted_by_pixel: bit(code, 4),
                 part: bit(code, 5),
                 layers: bit(code, 6),
+                orthographic: bit(code, 7),
             };
             let one_sample = deferred || settings.sorted_by_pixel || settings.motion_vectors;
             let twice = deferred && !bit(code, 2);
-            (!(twice || settings.four_samples && one_sample)).then_some(settings)
+            let other = settings.motion_vectors || settings.sorted_by_pixel || settings.layers;
+            let left_out = twice || settings.four_samples && one_sample || settings.orthographic && other;
+            (!left_out).then_some(settings)
         })
     }
 
@@ -74,6 +80,14 @@ impl Settings {
             OrderIndependentTransparencySettings::default(),
         );
         set_viewport(&mut own, self.part.then_some(PART));
+        own.insert(if self.orthographic {
+            Projection::Orthographic(OrthographicProjection {
+                scaling_mode: ScalingMode::FixedVertical { viewport_height: 0.5 },
+                ..OrthographicProjection::default_3d()
+            })
+        } else {
+            Projection::default()
+        });
         let layer = usize::from(self.layers);
         own.insert(RenderLayers::from_layers(&[0, layer]));
         test.world().entity_mut(screen).insert(RenderLayers::layer(layer));
@@ -138,7 +152,7 @@ fn check_all(deferred: bool) -> usize {
     show(&mut test, true);
     // One moment of the rain for all of them.
     test.leap(1);
-    let mut known: [Option<Vec<f64>>; 4] = [const { None }; 4];
+    let mut known: [Option<Vec<f64>>; 8] = [const { None }; 8];
     let mut checked = 0;
     for settings in Settings::all(deferred) {
         settings.apply(&mut test, screen);
@@ -147,7 +161,8 @@ fn check_all(deferred: bool) -> usize {
         test.reset();
         let with = test.picture();
         for pass in [PassName::Rainfall, PassName::Lattice, PassName::Splash, PassName::Haze] {
-            assert!(test.recorded(pass) > 0, "{settings:?}: {}", pass.as_str());
+            let drawn = pass == PassName::Rainfall || !settings.orthographic;
+            assert_eq!(test.recorded(pass) > 0, drawn, "{settings:?}: {}", pass.as_str());
         }
         let whole = [0, 0, SIZE[0], SIZE[1]];
         let [x, y, width, height] = if settings.part { PART } else { whole };
@@ -167,7 +182,9 @@ fn check_all(deferred: bool) -> usize {
             );
             assert!(outside.abs() < 1e-9, "{settings:?}: {outside} outside the view");
             // Nothing but the view's part, and whether cards can fade at the scene's depth, decides what the rain covers.
-            let case = 2 * usize::from(settings.part) + usize::from(settings.depth_prepass);
+            let case = 4 * usize::from(settings.orthographic)
+                + 2 * usize::from(settings.part)
+                + usize::from(settings.depth_prepass);
             let known = known[case].get_or_insert_with(|| found.clone());
             let off = known.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(off < 2e-3, "{settings:?}: the mask is another by {off}");
@@ -200,7 +217,7 @@ fn every_combination_of_forward_settings_shows_rain_where_it_is_and_one_mask() {
     if !gpu::available() {
         return;
     }
-    assert_eq!(check_all(false), 80);
+    assert_eq!(check_all(false), 96);
 }
 
 #[test]
@@ -208,5 +225,5 @@ fn every_combination_of_deferred_settings_shows_rain_where_it_is_and_one_mask() 
     if !gpu::available() {
         return;
     }
-    assert_eq!(check_all(true), 32);
+    assert_eq!(check_all(true), 36);
 }

@@ -24,6 +24,7 @@ mod looks;
 mod materials;
 mod mirrors;
 mod near_streaks;
+mod orthographic;
 mod painted;
 mod placed_puddles;
 mod pond;

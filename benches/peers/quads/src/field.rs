@@ -166,6 +166,7 @@ fn volume() -> RainViewVolume {
         solid_angle_sr: 4.0 * ratio.asin(),
         exposure_s: f64::from(EXPOSURE_S),
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 
@@ -259,6 +260,7 @@ pub fn input(choice: &DropChoice, soft_m: f32) -> RainfallInput<'_> {
         eye_velocity_m_s: Vec3::ZERO,
         viewport_px: Vec4::new(0.0, 0.0, SIZE[0] as f32, SIZE[1] as f32),
         focal_px: focal_px(),
+        parallel: None,
         near_m: NEAR_M,
         shutter: Shutter {
             exposure_s: EXPOSURE_S,

@@ -231,6 +231,7 @@ fn view(eye_m: DVec3) -> RainViewVolume {
         solid_angle_sr: 4.0 * ratio.asin(),
         exposure_s: 1.0 / 60.0,
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 

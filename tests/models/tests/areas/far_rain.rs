@@ -37,6 +37,7 @@ fn volume(eye_m: DVec3, turn: f64) -> RainViewVolume {
         solid_angle_sr: 1.0,
         exposure_s: 1.0 / 60.0,
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 

@@ -28,6 +28,7 @@ fn frustum(eye_m: DVec3, axis: Vec3, half: f32) -> RainViewVolume {
         solid_angle_sr: 1.0,
         exposure_s: EXPOSURE_S,
         turn_rad: 0.0,
+        parallel: None,
     }
 }
 
