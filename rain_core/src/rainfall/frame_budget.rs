@@ -5,6 +5,9 @@ use crate::error::{ConfigError, in_range};
 /// Times of one decision. The median of eight does not see three hitches among them.
 const LEAST_FRAMES: usize = 8;
 
+/// And no more than these, which is less than a window of frames far shorter than a display's.
+const MOST_FRAMES: usize = 64;
+
 /// A decision looks at no less than this. Units: ms.
 const WINDOW_MS: f64 = 250.0;
 
@@ -89,7 +92,7 @@ impl FrameBudget {
         Ok(Self {
             settings: settings.validated()?,
             share: 1.0,
-            times_ms: Vec::with_capacity(64),
+            times_ms: Vec::with_capacity(MOST_FRAMES),
             settle_ms: 0.0,
             too_much: None,
             median_ms: None,
@@ -142,11 +145,8 @@ impl FrameBudget {
         }
         self.times_ms.push(frame_ms);
         let seen_ms: f64 = self.times_ms.iter().sum();
-        if self.times_ms.len() >= LEAST_FRAMES && seen_ms >= WINDOW_MS {
-            self.decide();
-        } else if self.times_ms.len() == self.times_ms.capacity() {
-            // Frames far shorter than the window: the newer half says as much, and nothing is allocated.
-            self.times_ms.drain(..self.times_ms.len() / 2);
+        let frames = self.times_ms.len();
+        if frames >= MOST_FRAMES || frames >= LEAST_FRAMES && seen_ms >= WINDOW_MS {
             self.decide();
         }
         self.share
@@ -250,7 +250,7 @@ mod tests {
                 end.iter().all(|share| took(*share) <= 16.0),
                 "{base} + {rain}: {shares:?}"
             );
-            // It gives away no more than a tenth of the time that rain may take, or 5 % of the frame.
+            // It gives away no more than a tenth of the time that rain may take, or 9 % of the frame.
             let (last, room) = (took(*end.last().expect("some")), 16.0 - base);
             assert!(
                 last >= 16.0 - (0.1 * room).max(0.09 * 16.0),
@@ -337,6 +337,6 @@ mod tests {
         let mut budget = budget(0.5);
         let shares = play(&mut budget, 6, |share, _| 0.2 + 0.6 * share);
         assert!(0.2 + 0.6 * shares[5] <= 0.5, "{shares:?}");
-        assert_eq!(budget.times_ms.capacity(), 64);
+        assert_eq!(budget.times_ms.capacity(), MOST_FRAMES);
     }
 }

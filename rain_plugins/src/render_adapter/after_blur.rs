@@ -8,7 +8,7 @@ use bevy::render::view::Msaa;
 /// What decides when a view's rain is drawn.
 ///
 /// Streaks are exposed already and show too thin a veil to have a motion of their own in a pixel: blur along the motion of
-/// what lies behind would smear them a second time, and an average over frames would take most of them for noise. So where a
+/// what lies behind would smear them a second time, and an average over frames would take some of them for noise. So where a
 /// view has motion vectors they come after both. With several samples a pixel, or at a resolution of its own, the main
 /// pass's depth does not fit the picture by then: rain is drawn at the end of the main pass there, as in views without
 /// motion vectors.

@@ -397,8 +397,8 @@ fn values_out_of_domain_name_the_field() {
             "one of them",
         ),
         (
-            "interpolation: CatmullRom",
-            "orthographic_m: 0",
+            "interpolation: CatmullRom,\n    ),\n    rain",
+            "orthographic_m: 0,\n    ),\n    rain",
             "camera.orthographic_m",
             "0.1 to 1000 m",
         ),
