@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use glam::{DVec3, IVec3, Vec2, Vec3};
+use glam::{DVec3, IVec3, Vec2};
 use rain_bench::study::{Study, Variant};
 use rain_core::hash::unit_f32;
 use rain_core::haze::near_weight;
@@ -12,6 +12,8 @@ use rain_core::rainfall::{
     Container, Distribution, DrawRange, DropChoice, FieldMotion, RainViewVolume, ScreenStreak, SizeClass, Spectrum,
     cell_key, drop_marks, quality_for_budget,
 };
+
+use super::streaks::volume;
 
 /// Every study of this file.
 pub fn studies() -> Vec<Study> {
@@ -35,13 +37,11 @@ pub fn studies() -> Vec<Study> {
 }
 
 /// What is timed: on one thread what a software device does.
-const UNIT: &str = "view, chosen and composited by one thread";
-/// The picture. Units: px.
-const SIZE: [usize; 2] = [1280, 720];
-/// Tangent of half the vertical field of view, 60°.
-const TAN_Y: f32 = 0.577_350_26;
-/// Units: s.
-const EXPOSURE_S: f64 = 1.0 / 60.0;
+const UNIT: &str = "sixteenth of a view, chosen and composited by one thread";
+/// The middle of a picture of 1280 × 720, which is drawn: this share of it each way.
+const SHARE: f32 = 0.25;
+/// Its size. Units: px.
+const SIZE: [usize; 2] = [320, 180];
 /// Units: m.
 const NEAR_M: f32 = 0.1;
 /// Drops that a view on a software adapter draws unless told otherwise.
@@ -51,29 +51,17 @@ const SEED: u64 = 7;
 /// More drops than the rain has within reach.
 const MOST_DROPS: u32 = 1 << 23;
 
-fn focal_px() -> f32 {
-    0.5 * SIZE[1] as f32 / TAN_Y
+/// The part of the picture that is drawn, with the focal length of the whole.
+fn part() -> RainViewVolume {
+    volume(SHARE)
 }
 
-/// A still view at the height of a person's eyes, looking along −Z.
-fn volume() -> RainViewVolume {
-    let (ty, tx) = (TAN_Y, TAN_Y * SIZE[0] as f32 / SIZE[1] as f32);
-    let plane = |n: Vec3| n.normalize().extend(0.0);
-    let ratio = f64::from(tx * ty) / f64::from((1.0 + tx * tx) * (1.0 + ty * ty)).sqrt();
+/// The whole picture, which budgets are for.
+fn whole() -> RainViewVolume {
     RainViewVolume {
-        eye_m: DVec3::new(12.3, 1.7, -4.5),
-        eye_velocity_m_s: DVec3::ZERO,
-        side_planes: [
-            plane(Vec3::new(1.0, 0.0, -tx)),
-            plane(Vec3::new(-1.0, 0.0, -tx)),
-            plane(Vec3::new(0.0, 1.0, -ty)),
-            plane(Vec3::new(0.0, -1.0, -ty)),
-        ],
-        focal_px: f64::from(focal_px()),
-        solid_angle_sr: 4.0 * ratio.asin(),
-        exposure_s: EXPOSURE_S,
-        turn_rad: 0.0,
-        parallel: None,
+        // 4 asin(tx ty/√((1 + tx²)(1 + ty²))), 60° high and 16:9 wide.
+        solid_angle_sr: 1.473,
+        ..volume(1.0)
     }
 }
 
@@ -86,8 +74,8 @@ fn choice(budget: f64) -> DropChoice {
         seed: SEED,
         spectrum,
         motion: motion.after(1234.5),
-        view: volume(),
-        kappa: quality_for_budget(&spectrum, &volume(), budget),
+        view: part(),
+        kappa: quality_for_budget(&spectrum, &whole(), budget),
         most_drops: MOST_DROPS,
         uneven: None,
         region: None,
@@ -128,8 +116,9 @@ impl Picture {
             let head = record.position(choice.seed, &self.container.classes);
             let presence = (record.drop >> 16) as f32 / 65_535.0;
             let weight = near_weight(head.length().into(), range.at(diameter_mm.into())) as f32 * presence;
-            let tail = head - placement.velocity_m_s * EXPOSURE_S as f32;
-            let streak = ScreenStreak::project(head, tail, 1e-3 * diameter_mm, focal_px(), NEAR_M);
+            let tail = head - placement.velocity_m_s * choice.view.exposure_s as f32;
+            let focal_px = choice.view.focal_px as f32;
+            let streak = ScreenStreak::project(head, tail, 1e-3 * diameter_mm, focal_px, NEAR_M);
             if let Some(streak) = streak.filter(|_| weight > 0.0) {
                 let middle = 0.5 * (head + tail);
                 // Off the axis a flat picture draws a sphere out to an ellipse.

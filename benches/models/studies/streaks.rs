@@ -102,16 +102,18 @@ fn texels() -> Study {
     }
 }
 
-fn volume() -> RainViewVolume {
+/// A still view of 1280 × 720 px at the height of a person's eyes, looking along −Z, 60° high; or this share of it each way.
+pub(super) fn volume(share: f32) -> RainViewVolume {
     let plane = |n: Vec3| n.normalize().extend(0.0);
+    let [tx, ty] = [1.03 * share, 0.58 * share];
     RainViewVolume {
         eye_m: DVec3::new(12.3, 1.7, -4.5),
         eye_velocity_m_s: DVec3::ZERO,
         side_planes: [
-            plane(Vec3::new(1.0, 0.0, -1.03)),
-            plane(Vec3::new(-1.0, 0.0, -1.03)),
-            plane(Vec3::new(0.0, 1.0, -0.58)),
-            plane(Vec3::new(0.0, -1.0, -0.58)),
+            plane(Vec3::new(1.0, 0.0, -tx)),
+            plane(Vec3::new(-1.0, 0.0, -tx)),
+            plane(Vec3::new(0.0, 1.0, -ty)),
+            plane(Vec3::new(0.0, -1.0, -ty)),
         ],
         focal_px: 623.5,
         solid_angle_sr: 1.7,
@@ -142,7 +144,7 @@ fn fill(plan: &LatticePlan, volume: &RainViewVolume, spectrum: &Spectrum, second
 /// count as their means, so that only the lattice is left.
 fn unevenness(plan: &LatticePlan, spectrum: &Spectrum) -> f64 {
     const RAYS: u32 = 2000;
-    let volume = volume();
+    let volume = volume(1.0);
     let range = DrawRange {
         kappa: 1.1,
         focal_px: volume.focal_px,
@@ -197,7 +199,7 @@ fn cells() -> Study {
         let error = unevenness(&plan, &spectrum);
         let mut cards = Vec::new();
         let mut seconds = 0.0;
-        let volume = volume();
+        let volume = volume(1.0);
         let variant = Variant::new(name, error, 1, move || {
             seconds += 0.01;
             fill(&plan, &volume, &spectrum, seconds, &mut cards);

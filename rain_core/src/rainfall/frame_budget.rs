@@ -183,13 +183,12 @@ impl FrameBudget {
     }
 
     fn note_too_much(&mut self, share: f64) {
-        let again = self
-            .too_much
-            .filter(|known| known.left_ms == 0.0 && share >= SAME * known.share && SAME * share <= known.share);
-        let avoid_ms = match (again, self.too_much) {
-            (Some(known), _) => (2.0 * known.avoid_ms).min(AVOID_MS[1]),
-            // Still falling from the same load: the first share of the fall is not what is too much.
-            (None, Some(known)) if known.left_ms > 0.0 => known.avoid_ms,
+        let avoid_ms = match self.too_much {
+            // Still falling under the same load: the first share of the fall is not what is too much.
+            Some(known) if known.left_ms > 0.0 => known.avoid_ms,
+            Some(known) if (SAME..=1.0 / SAME).contains(&(share / known.share)) => {
+                (2.0 * known.avoid_ms).min(AVOID_MS[1])
+            }
             _ => AVOID_MS[0],
         };
         self.too_much = Some(TooMuch {

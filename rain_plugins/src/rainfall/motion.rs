@@ -9,6 +9,9 @@ const CUT_SPEED_M_S: f32 = 150.0;
 /// Above this turning rate a camera has been cut. Units: rad/s.
 const CUT_TURN_RAD_S: f32 = 40.0;
 
+/// Over a longer time than this the mean velocity says nothing about a shutter: the camera may have been cut. Units: s.
+const CUT_TIME_S: f32 = 0.5;
+
 /// Velocity and turning of a camera, from its last two poses.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Default)]
 pub struct ViewMotion {
@@ -27,6 +30,7 @@ impl ViewMotion {
         let (mut velocity, mut turn) = (Vec3::ZERO, Vec3::ZERO);
         if let Some((last_position, last_rotation)) = self.last
             && seconds > 0.0
+            && seconds <= CUT_TIME_S
         {
             velocity = (position - last_position) / seconds;
             turn = (rotation * last_rotation.inverse()).to_scaled_axis() / seconds;
@@ -91,5 +95,10 @@ mod tests {
         assert_eq!(motion.velocity_m_s, DVec3::ZERO);
         motion.observe(Vec3::new(40.0, 0.0, 0.0), Quat::IDENTITY, 0.0);
         assert_eq!(motion.velocity_m_s, DVec3::ZERO);
+        // 20 m/s, if it was driven there; over half a second it was.
+        motion.observe(Vec3::new(80.0, 0.0, 0.0), Quat::IDENTITY, 2.0);
+        assert_eq!(motion.velocity_m_s, DVec3::ZERO);
+        motion.observe(Vec3::new(90.0, 0.0, 0.0), Quat::IDENTITY, 0.5);
+        assert_eq!(motion.velocity_m_s, DVec3::X * 20.0);
     }
 }

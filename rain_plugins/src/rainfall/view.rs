@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy::math::{DVec2, DVec3, Vec4};
+use bevy::math::{DVec2, Vec4};
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
@@ -371,14 +371,6 @@ pub(crate) fn choose_drops(
             view_volume(clip_from_view, size, transform, &motion, settings.exposure_s)
         };
         let budget = settings.budget(*software, &share);
-        let running = frame
-            .quality
-            .filter(|quality| (0.0..0.5).contains(&(now - quality.set_s)) && quality.size_px == size);
-        // Over a longer time than that a camera may have been cut, whatever its mean velocity.
-        let mut counted = volume;
-        if running.is_none() {
-            counted.eye_velocity_m_s = DVec3::ZERO;
-        }
         let of = QualityOf {
             spectrum,
             focal_px: volume.focal_px,
@@ -386,15 +378,15 @@ pub(crate) fn choose_drops(
             width_m: volume.parallel.map_or(0.0, |parallel| parallel.across_m.length()),
             exposure_s: volume.exposure_s,
             budget,
-            growth: (counted.lead_growth(LEAD_SAMPLE_M).ln() / LEAD_STEP).round() as i32,
+            growth: (volume.lead_growth(LEAD_SAMPLE_M).ln() / LEAD_STEP).round() as i32,
         };
         let target = match frame.quality {
             Some(quality) if quality.of == of => quality.target,
-            _ => quality_for_budget(&spectrum, &counted, f64::from(budget)).max(1e-6),
+            _ => quality_for_budget(&spectrum, &volume, f64::from(budget)).max(1e-6),
         };
-        let kappa = match running {
+        let kappa = match frame.quality {
             // Low-passed while the view runs; at once after a pause or in a picture of another size, when nobody sees the jump.
-            Some(quality) => {
+            Some(quality) if (0.0..0.5).contains(&(now - quality.set_s)) && quality.size_px == size => {
                 let blend = 1.0 - (-(now - quality.set_s) / QUALITY_TIME_S).exp();
                 quality.kappa * (target / quality.kappa).powf(blend)
             }
