@@ -1,12 +1,19 @@
 //! Bindings and pipelines as several passes have them.
 
-/// A uniform buffer of `size` bytes.
-pub(crate) fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages, size: usize) -> wgpu::BindGroupLayoutEntry {
+use crate::params_space::ParamsSpace;
+
+/// Parameters of `size` bytes, which invocations only read.
+pub(crate) fn params_entry(
+    device: &wgpu::Device,
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    size: usize,
+) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
         ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
+            ty: ParamsSpace::of(device).binding(),
             has_dynamic_offset: false,
             min_binding_size: wgpu::BufferSize::new(size as u64),
         },

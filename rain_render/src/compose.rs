@@ -11,6 +11,7 @@ use rain_core::splash::{SPLASH_CELL_M, SPLASH_SLOT_S, SPLASH_SLOTS};
 use rain_core::surface::{FLOW_NOISE, FLOW_PERIOD_S};
 use rain_core::waves::{CAUSTIC_END_M, CAUSTIC_RAYS, CAUSTIC_TEXELS, CAUSTIC_WAYS_M, LEAST_ELEVATION, RING_FADE};
 
+use crate::params_space::ParamsSpace;
 use crate::rainfall::NO_DROP;
 
 /// Structs that cross from the CPU.
@@ -232,9 +233,14 @@ pub fn module(pass: &str) -> String {
 }
 
 pub(crate) fn shader(device: &wgpu::Device, pass: &str) -> wgpu::ShaderModule {
+    create(device, pass, &module(pass))
+}
+
+/// A module whose parameters lie where the device has them.
+pub(crate) fn create(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(pass),
-        source: wgpu::ShaderSource::Wgsl(module(pass).into()),
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(ParamsSpace::of(device).source(source)),
     })
 }
 

@@ -18,6 +18,7 @@ pub mod lattice;
 pub mod lens;
 pub mod masks;
 mod overlay;
+pub mod params_space;
 mod quad_indices;
 pub mod rainfall;
 pub mod reflection;

@@ -8,6 +8,7 @@ use glam::{Mat4, Vec4};
 use crate::bindings::{sampler_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::{MaskView, SurfaceParams};
+use crate::params_space::{PARAMS, ParamsSpace};
 
 /// Format of the wet, distance and water masks.
 pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
@@ -112,7 +113,7 @@ impl MaskGpu {
                     binding: 0,
                     visibility: wgpu::ShaderStages::FRAGMENT,
                     ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
+                        ty: ParamsSpace::of(device).binding(),
                         has_dynamic_offset: false,
                         min_binding_size: wgpu::BufferSize::new(size_of::<MaskView>() as u64),
                     },
@@ -209,13 +210,13 @@ impl MaskGpu {
             surface,
         };
         // Each view has its own.
-        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+        let params = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("rain masks"),
             size: size_of::<MaskView>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            usage: PARAMS | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&view));
+        queue.write_buffer(&params, 0, bytemuck::bytes_of(&view));
         let maps = ground.unwrap_or(GroundMaps {
             films: &self.nothing,
             levels: &self.nothing,
@@ -226,7 +227,7 @@ impl MaskGpu {
             label: Some("rain masks"),
             layout: &self.layout,
             entries: &[
-                entry(0, uniform.as_entire_binding()),
+                entry(0, params.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(scene_depth)),
                 entry(2, wgpu::BindingResource::TextureView(cover)),
                 entry(3, wgpu::BindingResource::TextureView(maps.films)),

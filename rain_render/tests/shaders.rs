@@ -1,6 +1,7 @@
 //! Every module is valid WGSL, and every struct that crosses to the GPU has the same layout on both sides.
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use rain_render::params_space::ParamsSpace;
 use rain_render::{compose, gpu_types};
 
 fn parse(source: &str) -> naga::Module {
@@ -11,13 +12,25 @@ fn parse(source: &str) -> naga::Module {
 fn every_module_is_valid() {
     let mut checked = 0;
     for pass in compose::PASSES {
-        let source = compose::module(pass.name);
-        let module = parse(&source);
-        assert!(!module.entry_points.is_empty(), "{} has no entry point", pass.name);
-        // Halves in words are a part of every WebGPU.
-        Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
-            .validate(&module)
-            .unwrap_or_else(|e| panic!("{}: {}", pass.name, e.emit_to_string(&source)));
+        let declared = compose::module(pass.name);
+        for space in [ParamsSpace::Uniform, ParamsSpace::Storage] {
+            let source = space.source(&declared);
+            let module = parse(&source);
+            assert!(!module.entry_points.is_empty(), "{} has no entry point", pass.name);
+            let uniform = module
+                .global_variables
+                .iter()
+                .any(|(_, v)| v.space == naga::AddressSpace::Uniform);
+            assert!(
+                !uniform || space == ParamsSpace::Uniform,
+                "{} keeps a uniform buffer",
+                pass.name
+            );
+            // Halves in words are a part of every WebGPU.
+            Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+                .validate(&module)
+                .unwrap_or_else(|e| panic!("{}: {}", pass.name, e.emit_to_string(&source)));
+        }
         checked += 1;
     }
     assert_eq!(

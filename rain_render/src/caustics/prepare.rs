@@ -3,9 +3,10 @@
 use rain_core::waves::CAUSTIC_TEXELS;
 
 use super::params::{CAUSTIC_FORMAT, CausticFrame};
-use crate::bindings::{compute_pipeline, storage_entry, storage_texture_entry, texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, params_entry, storage_entry, storage_texture_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::CausticParams;
+use crate::params_space::PARAMS;
 
 /// Bindings of one slope map and one map of its light.
 #[derive(Debug)]
@@ -22,7 +23,7 @@ pub struct CausticsGpu {
     pub(super) send: wgpu::ComputePipeline,
     pub(super) gather: wgpu::ComputePipeline,
     sampler: wgpu::Sampler,
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     pub(super) thrown: wgpu::Buffer,
     bound: Option<Bound>,
 }
@@ -35,7 +36,7 @@ impl CausticsGpu {
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain caustics"),
             entries: &[
-                uniform_entry(0, compute, size_of::<CausticParams>()),
+                params_entry(device, 0, compute, size_of::<CausticParams>()),
                 texture_entry(
                     1,
                     compute,
@@ -66,10 +67,10 @@ impl CausticsGpu {
                 min_filter: wgpu::FilterMode::Linear,
                 ..Default::default()
             }),
-            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+            params: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("rain caustics"),
                 size: size_of::<CausticParams>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                usage: PARAMS | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
             thrown: device.create_buffer(&wgpu::BufferDescriptor {
@@ -92,7 +93,7 @@ impl CausticsGpu {
         map: &wgpu::Texture,
         frame: &CausticFrame,
     ) {
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&frame.params()));
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&frame.params()));
         let same = |bound: &Bound| bound.slopes == *slopes && bound.map == *map;
         if self.bound.as_ref().is_some_and(same) {
             return;
@@ -104,7 +105,7 @@ impl CausticsGpu {
             })
         });
         let resources = [
-            self.uniform.as_entire_binding(),
+            self.params.as_entire_binding(),
             wgpu::BindingResource::TextureView(&views[0]),
             wgpu::BindingResource::Sampler(&self.sampler),
             self.thrown.as_entire_binding(),
@@ -132,6 +133,6 @@ impl CausticsGpu {
     /// GPU memory without the map. Units: bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> u64 {
-        self.uniform.size() + self.thrown.size()
+        self.params.size() + self.thrown.size()
     }
 }

@@ -1,4 +1,4 @@
-//! Plain inputs of the pass and how they become the uniform.
+//! Plain inputs of the pass and how they become its parameters.
 
 use glam::{Mat4, Vec3};
 use rain_core::rainfall::FarParticle;
@@ -24,8 +24,8 @@ pub struct FarRainInput<'a> {
 }
 
 impl FarRainInput<'_> {
-    /// The uniform of this view.
-    pub(super) fn uniform(&self) -> FarRainParams {
+    /// The parameters of this view.
+    pub(super) fn params(&self) -> FarRainParams {
         FarRainParams {
             clip_from_eye: self.clip_from_eye.to_cols_array_2d(),
             environment: Vec3::splat(self.lighting.environment_scale)

@@ -3,9 +3,10 @@
 use rain_core::rainfall::FarParticle;
 
 use super::params::FarRainInput;
-use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{linear_sampler, one_texel, params_entry, sampler_entry, storage_entry, texture_entry};
 use crate::gpu_types::FarRainParams;
 use crate::overlay::{Overlay, OverlayKey};
+use crate::params_space::PARAMS;
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
@@ -26,7 +27,7 @@ impl FarRainGpu {
             "far rain",
             "far_rain",
             &[
-                uniform_entry(0, both, size_of::<FarRainParams>()),
+                params_entry(device, 0, both, size_of::<FarRainParams>()),
                 storage_entry(1, vertex, true),
                 texture_entry(
                     2,
@@ -62,7 +63,7 @@ impl FarRainGpu {
 /// Buffers and bindings of one view; grown, never shrunk.
 #[derive(Debug)]
 pub struct FarRainViewGpu {
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     particles: wgpu::Buffer,
     capacity: usize,
     pub(super) count: u32,
@@ -84,10 +85,10 @@ impl FarRainViewGpu {
     pub fn new(device: &wgpu::Device) -> Self {
         const CAPACITY: usize = 4096;
         Self {
-            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+            params: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("far rain view"),
                 size: size_of::<FarRainParams>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                usage: PARAMS | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
             particles: particle_buffer(device, CAPACITY),
@@ -112,14 +113,14 @@ impl FarRainViewGpu {
             self.capacity = input.particles.len().next_power_of_two();
             self.particles = particle_buffer(device, self.capacity);
         }
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&input.uniform()));
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&input.params()));
         queue.write_buffer(&self.particles, 0, bytemuck::cast_slice(input.particles));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         self.group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("far rain"),
             layout: &gpu.draw.layout,
             entries: &[
-                entry(0, self.uniform.as_entire_binding()),
+                entry(0, self.params.as_entire_binding()),
                 entry(1, self.particles.as_entire_binding()),
                 entry(
                     2,

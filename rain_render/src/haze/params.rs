@@ -1,4 +1,4 @@
-//! Plain inputs of the pass and how they become the uniform.
+//! Plain inputs of the pass and how they become its parameters.
 
 use glam::{Mat4, Vec3, Vec4};
 use rain_core::haze::{FOG_TABLE_KNOTS, LEAST_LAMP_M, RATE_KNOTS, RateExtinction};
@@ -180,9 +180,9 @@ impl HazeInput<'_> {
         own + (1.0 - own) * self.fog_share()
     }
 
-    /// The uniform of this view.
+    /// The parameters of this view.
     #[must_use]
-    pub fn uniform(&self) -> HazeView {
+    pub fn params(&self) -> HazeView {
         let depth_row = self.clip_from_eye.row(2);
         // Directions do not depend on the near plane: here it lies a metre ahead.
         let mut plain = self.clip_from_eye;

@@ -5,11 +5,12 @@ use rain_core::rainfall::areas::MAX_PACKED_ROWS;
 
 use super::HazeInput;
 use crate::bindings::{
-    compute_pipeline, linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry,
+    compute_pipeline, linear_sampler, one_texel, params_entry, sampler_entry, storage_entry, texture_entry,
 };
 use crate::compose::{self, HAZE_AZIMUTHS, HAZE_INTERVALS};
 use crate::gpu_types::HazeView;
 use crate::overlay::{Overlay, OverlayKey};
+use crate::params_space::PARAMS;
 use crate::rainfall::DEPTH_FORMAT;
 
 /// Everything of the pass that lives as long as the device.
@@ -41,7 +42,7 @@ pub struct HazeTextures<'a> {
 /// Buffers and bind groups of one view.
 #[derive(Debug)]
 pub struct HazeViewGpu {
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     rows: wgpu::Buffer,
     grid: wgpu::Buffer,
     /// Made for the first rainbow, and what it holds.
@@ -62,7 +63,7 @@ fn bow_buffer(device: &wgpu::Device) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("rain bow"),
         size: BOW_BYTES as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        usage: PARAMS | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
 }
@@ -83,7 +84,7 @@ fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
         *several = multisampled;
     }
     let entries = [
-        uniform_entry(0, raster, size_of::<HazeView>()),
+        params_entry(device, 0, raster, size_of::<HazeView>()),
         storage_entry(1, fragment, true),
         depth,
         texture_entry(
@@ -93,7 +94,7 @@ fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
             wgpu::TextureViewDimension::Cube,
         ),
         sampler_entry(4, fragment),
-        uniform_entry(5, fragment, BOW_BYTES),
+        params_entry(device, 5, fragment, BOW_BYTES),
         texture_entry(
             6,
             raster,
@@ -102,10 +103,7 @@ fn overlay(device: &wgpu::Device, multisampled: bool) -> Overlay {
         ),
     ];
     let shader = if multisampled {
-        device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("haze"),
-            source: wgpu::ShaderSource::Wgsl(compose::haze_of_samples().into()),
-        })
+        compose::create(device, "haze", &compose::haze_of_samples())
     } else {
         compose::shader(device, "haze")
     };
@@ -121,7 +119,7 @@ impl HazeGpu {
         let areas_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain haze areas"),
             entries: &[
-                uniform_entry(0, compute, size_of::<HazeView>()),
+                params_entry(device, 0, compute, size_of::<HazeView>()),
                 storage_entry(1, compute, true),
                 storage_entry(2, compute, false),
             ],
@@ -184,7 +182,7 @@ impl HazeViewGpu {
             })
         };
         Self {
-            uniform: buffer("rain haze view", size_of::<HazeView>(), wgpu::BufferUsages::UNIFORM),
+            params: buffer("rain haze view", size_of::<HazeView>(), PARAMS),
             rows: buffer("rain haze areas", ROWS_BYTES, wgpu::BufferUsages::STORAGE),
             grid: buffer(
                 "rain haze grid",
@@ -209,9 +207,9 @@ impl HazeViewGpu {
         textures: HazeTextures,
         samples: u32,
     ) {
-        let uniform = input.uniform();
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        self.mist = uniform.splash[0] + uniform.splash[2] > 0.0;
+        let params = input.params();
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        self.mist = params.splash[0] + params.splash[2] > 0.0;
         self.uneven = input.areas.is_some();
         if let Some(areas) = &input.areas {
             let head = [[areas.packed.areas as f32, areas.packed.outside, areas.weather_mm_h, 0.0]];
@@ -231,7 +229,7 @@ impl HazeViewGpu {
                 label: Some("rain haze areas"),
                 layout: &gpu.areas_layout,
                 entries: &[
-                    entry(0, self.uniform.as_entire_binding()),
+                    entry(0, self.params.as_entire_binding()),
                     entry(1, self.rows.as_entire_binding()),
                     entry(2, self.grid.as_entire_binding()),
                 ],
@@ -243,7 +241,7 @@ impl HazeViewGpu {
                 label: Some("rain haze"),
                 layout: &gpu.overlay(samples).layout,
                 entries: &[
-                    entry(0, self.uniform.as_entire_binding()),
+                    entry(0, self.params.as_entire_binding()),
                     entry(1, self.grid.as_entire_binding()),
                     entry(2, wgpu::BindingResource::TextureView(textures.scene_depth)),
                     entry(3, wgpu::BindingResource::TextureView(environment)),

@@ -1,4 +1,4 @@
-//! Plain inputs of the pass and how they become the uniform.
+//! Plain inputs of the pass and how they become its parameters.
 
 use glam::{Mat4, Vec3};
 use rain_core::rainfall::{Card, Lamp};
@@ -32,8 +32,8 @@ pub struct LatticeInput<'a> {
 }
 
 impl LatticeInput<'_> {
-    /// The uniform of this view; `soft`: whether the scene's depth is there.
-    pub(super) fn uniform(&self, soft: bool) -> LatticeParams {
+    /// The parameters of this view; `soft`: whether the scene's depth is there.
+    pub(super) fn params(&self, soft: bool) -> LatticeParams {
         let (lamp, lamps) = lamps::slots(self.lamps);
         let (pane, panes) = glass::slots(self.panes);
         LatticeParams {

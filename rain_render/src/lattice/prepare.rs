@@ -3,9 +3,10 @@
 use rain_core::rainfall::Card;
 
 use super::params::LatticeInput;
-use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{linear_sampler, one_texel, params_entry, sampler_entry, storage_entry, texture_entry};
 use crate::gpu_types::LatticeParams;
 use crate::overlay::Overlay;
+use crate::params_space::PARAMS;
 use crate::rainfall::{DEPTH_FORMAT, RainfallTextures};
 use crate::streak_textures::StreakArray;
 
@@ -32,7 +33,7 @@ impl LatticeGpu {
             "rain lattice",
             "lattice_draw",
             &[
-                uniform_entry(0, both, size_of::<LatticeParams>()),
+                params_entry(device, 0, both, size_of::<LatticeParams>()),
                 storage_entry(1, both, true),
                 storage_entry(2, fragment, true),
                 texture_entry(3, fragment, colour, wgpu::TextureViewDimension::D2Array),
@@ -69,7 +70,7 @@ impl LatticeGpu {
 /// Buffers and bindings of one view; grown, never shrunk.
 #[derive(Debug)]
 pub struct LatticeViewGpu {
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     cards: wgpu::Buffer,
     units: wgpu::Buffer,
     /// Textures whose units are uploaded.
@@ -94,11 +95,7 @@ impl LatticeViewGpu {
             })
         };
         Self {
-            uniform: buffer(
-                "rain lattice view",
-                size_of::<LatticeParams>(),
-                wgpu::BufferUsages::UNIFORM,
-            ),
+            params: buffer("rain lattice view", size_of::<LatticeParams>(), PARAMS),
             cards: buffer("rain cards", CAPACITY * size_of::<Card>(), wgpu::BufferUsages::STORAGE),
             units: buffer(
                 "rain streak texture units",
@@ -133,9 +130,9 @@ impl LatticeViewGpu {
                 mapped_at_creation: false,
             });
         }
-        let uniform = input.uniform(textures.scene_depth.is_some());
-        self.panes = uniform.panes;
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        let params = input.params(textures.scene_depth.is_some());
+        self.panes = params.panes;
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
         if !input.cards.is_empty() {
             queue.write_buffer(&self.cards, 0, bytemuck::cast_slice(input.cards));
         }
@@ -145,7 +142,7 @@ impl LatticeViewGpu {
             self.units_of = Some(streaks.key());
         }
         let resources = [
-            self.uniform.as_entire_binding(),
+            self.params.as_entire_binding(),
             self.cards.as_entire_binding(),
             self.units.as_entire_binding(),
             wgpu::BindingResource::TextureView(streaks.view()),

@@ -15,19 +15,19 @@ pub fn encode_lens(
     let Some(pipelines) = gpu.made.get(&format) else { return };
     let small = view.small.create_view(&wgpu::TextureViewDescriptor::default());
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    let uniform = || entry(0, view.uniform.as_entire_binding());
+    let params = || entry(0, view.params.as_entire_binding());
     let picture = || entry(2, wgpu::BindingResource::TextureView(scene));
     let sampler = || entry(4, wgpu::BindingResource::Sampler(&gpu.sampler));
     let shrink = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("rain lens shrink"),
         layout: &gpu.shrink_layout,
-        entries: &[uniform(), picture(), sampler()],
+        entries: &[params(), picture(), sampler()],
     });
     let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("rain lens"),
         layout: &gpu.layout,
         entries: &[
-            uniform(),
+            params(),
             entry(1, view.drops.as_entire_binding()),
             picture(),
             entry(3, wgpu::BindingResource::TextureView(&small)),

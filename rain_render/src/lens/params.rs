@@ -29,7 +29,7 @@ pub struct LensInput<'a> {
 }
 
 impl LensInput<'_> {
-    /// The uniform.
+    /// The parameters.
     pub(super) fn view(&self) -> LensView {
         let wipers = self.wipers;
         let [period, moving] = wipers.mode.cycle_s().unwrap_or([1.0; 2]);

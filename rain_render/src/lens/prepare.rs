@@ -5,9 +5,10 @@ use std::collections::HashMap;
 use rain_core::lens::MAX_GLASS_DROPS;
 
 use super::params::LensInput;
-use crate::bindings::{storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{params_entry, storage_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::{LensDrop, LensView};
+use crate::params_space::PARAMS;
 
 /// Format of the shrunk copy.
 const SMALL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -84,15 +85,15 @@ impl LensGpu {
             count: None,
         };
         let scene = texture_entry(2, fragment, filtered, wgpu::TextureViewDimension::D2);
-        let uniform = uniform_entry(0, both, size_of::<LensView>());
+        let params = params_entry(device, 0, both, size_of::<LensView>());
         let shrink_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain lens shrink"),
-            entries: &[uniform, scene, sampler_entry],
+            entries: &[params, scene, sampler_entry],
         });
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain lens"),
             entries: &[
-                uniform,
+                params,
                 storage_entry(1, both, true),
                 scene,
                 texture_entry(3, fragment, filtered, wgpu::TextureViewDimension::D2),
@@ -144,7 +145,7 @@ impl LensGpu {
 /// What a view owns.
 #[derive(Debug)]
 pub struct LensViewGpu {
-    pub(super) uniform: wgpu::Buffer,
+    pub(super) params: wgpu::Buffer,
     pub(super) drops: wgpu::Buffer,
     pub(super) small: wgpu::Texture,
     pub(super) count: u32,
@@ -164,7 +165,7 @@ impl LensViewGpu {
             })
         };
         Self {
-            uniform: buffer("rain lens view", size_of::<LensView>(), wgpu::BufferUsages::UNIFORM),
+            params: buffer("rain lens view", size_of::<LensView>(), PARAMS),
             drops: buffer(
                 "rain lens drops",
                 MAX_GLASS_DROPS * size_of::<LensDrop>(),
@@ -180,7 +181,7 @@ impl LensViewGpu {
     pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, input: &LensInput) {
         let view = input.view();
         let drops = &input.drops[..input.drops.len().min(MAX_GLASS_DROPS)];
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&view));
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&view));
         queue.write_buffer(&self.drops, 0, bytemuck::cast_slice(drops));
         self.count = drops.len() as u32;
         self.viewport = view.viewport;

@@ -15,9 +15,10 @@ use rain_core::rainfall::{
     UnevenRain, ViewCells,
 };
 
-use crate::bindings::{compute_pipeline_with, storage_entry, uniform_entry};
+use crate::bindings::{compute_pipeline_with, params_entry, storage_entry};
 use crate::compose;
 use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
+use crate::params_space::PARAMS;
 use crate::quad_indices::quads_of_a_draw;
 use crate::rainfall::prepare::AGAIN_WORD;
 
@@ -90,8 +91,8 @@ impl Choose {
         let compute = wgpu::ShaderStages::COMPUTE;
         let layout = |buffers: &[(u32, bool)]| {
             let mut entries = vec![
-                uniform_entry(0, compute, size_of::<RainfallView>()),
-                uniform_entry(1, compute, size_of::<RainfallChoice>()),
+                params_entry(device, 0, compute, size_of::<RainfallView>()),
+                params_entry(device, 1, compute, size_of::<RainfallChoice>()),
             ];
             entries.extend(
                 buffers
@@ -157,7 +158,7 @@ impl Choose {
 /// Buffers of a view that chooses; grown, never shrunk.
 #[derive(Debug)]
 pub(super) struct ChoiceGpu {
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     counts: wgpu::Buffer,
     sums: wgpu::Buffer,
     noted: wgpu::Buffer,
@@ -235,10 +236,10 @@ pub(super) struct ChoiceTargets<'a> {
 impl ChoiceGpu {
     pub fn new(device: &wgpu::Device) -> Self {
         Self {
-            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+            params: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("rain drop choice"),
                 size: size_of::<RainfallChoice>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                usage: PARAMS | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
             counts: storage(device, "rain drop counts", 4096),
@@ -272,18 +273,13 @@ impl ChoiceGpu {
         };
         choose.prepare(device, self.key);
         let stage = u32::try_from(targets.stage.size() / 4).unwrap_or(u32::MAX);
-        let uniform = uniform(asked, stage);
-        (self.rows, self.groups) = (uniform.rows, uniform.groups);
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        grow(
-            device,
-            &mut self.counts,
-            "rain drop counts",
-            4 * u64::from(uniform.runs),
-        );
-        grow(device, &mut self.sums, "rain drop sums", 8 * u64::from(uniform.groups));
-        if self.noted.size() < 4 * (NOTED + u64::from(uniform.runs)) {
-            self.noted = noted(device, uniform.runs + uniform.runs / 4);
+        let params = params(asked, stage);
+        (self.rows, self.groups) = (params.rows, params.groups);
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        grow(device, &mut self.counts, "rain drop counts", 4 * u64::from(params.runs));
+        grow(device, &mut self.sums, "rain drop sums", 8 * u64::from(params.groups));
+        if self.noted.size() < 4 * (NOTED + u64::from(params.runs)) {
+            self.noted = noted(device, params.runs + params.runs / 4);
         }
         let mut whole = true;
         if let Some(rain) = &choice.uneven {
@@ -298,7 +294,7 @@ impl ChoiceGpu {
         // By binding.
         let buffers = [
             targets.view,
-            &self.uniform,
+            &self.params,
             &self.counts,
             &self.sums,
             targets.arguments,
@@ -398,7 +394,7 @@ impl ChoiceGpu {
     /// GPU memory. Units: bytes.
     pub fn memory_bytes(&self) -> u64 {
         let buffers = [
-            &self.uniform,
+            &self.params,
             &self.counts,
             &self.sums,
             &self.noted,
@@ -459,8 +455,8 @@ fn room(limit: f32, runs: u32, left: u32) -> u32 {
     }
 }
 
-/// The uniform for a stage of so many drops.
-fn uniform(asked: &Asked, stage: u32) -> RainfallChoice {
+/// The parameters of a stage of so many drops.
+fn params(asked: &Asked, stage: u32) -> RainfallChoice {
     let Asked {
         choice,
         cells,

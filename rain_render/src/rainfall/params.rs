@@ -1,4 +1,4 @@
-//! Plain inputs of the pass and how they become the uniform.
+//! Plain inputs of the pass and how they become its parameters.
 
 use glam::{Mat4, Vec3, Vec4};
 use rain_core::hash::pcg3d;
@@ -100,9 +100,9 @@ pub struct RainfallInput<'a> {
 }
 
 impl RainfallInput<'_> {
-    /// The uniform of this view; `placements` are those of its drops.
+    /// The parameters of this view; `placements` are those of its drops.
     #[must_use]
-    pub(super) fn uniform(&self, placements: &[ClassPlacement]) -> RainfallView {
+    pub(super) fn params(&self, placements: &[ClassPlacement]) -> RainfallView {
         let seed = self.drops.seed();
         let mut classes = [bytemuck::Zeroable::zeroed(); CLASS_COUNT];
         for (k, (slot, placement)) in classes.iter_mut().zip(placements).enumerate() {

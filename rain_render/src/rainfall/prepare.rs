@@ -2,10 +2,11 @@
 
 use rain_core::rainfall::DropRecord;
 
-use crate::bindings::{linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{linear_sampler, one_texel, params_entry, sampler_entry, storage_entry, texture_entry};
 use crate::gpu_types::{RainfallView, Streak};
 use crate::guard_band::GuardBand;
 use crate::overlay::{Overlay, OverlayKey};
+use crate::params_space::PARAMS;
 use crate::quad_indices::{DRAW_BYTES, QuadIndices, draw_words, quads_of_a_draw};
 use crate::rainfall::choose::{Asked, ChoiceGpu, ChoiceTargets, Choose};
 use crate::rainfall::near::near_reaches;
@@ -75,7 +76,7 @@ pub struct RainfallTextures<'a> {
 /// Buffers and bind groups of one view; grown, never shrunk.
 #[derive(Debug)]
 pub struct RainfallViewGpu {
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     records: wgpu::Buffer,
     streaks: wgpu::Buffer,
     /// As many drops as the buffers hold.
@@ -108,7 +109,7 @@ impl RainfallGpu {
         let depth = wgpu::TextureSampleType::Depth;
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let even = [
-            uniform_entry(0, raster, size_of::<RainfallView>()),
+            params_entry(device, 0, raster, size_of::<RainfallView>()),
             storage_entry(1, raster, true),
         ];
         let draw = Overlay::new(device, "rain rainfall draw", "rainfall_draw", &even)
@@ -181,12 +182,7 @@ impl RainfallViewGpu {
     pub fn new(device: &wgpu::Device) -> Self {
         let storage = wgpu::BufferUsages::STORAGE;
         Self {
-            uniform: buffer(
-                device,
-                "rain rainfall view",
-                size_of::<RainfallView>() as u64,
-                wgpu::BufferUsages::UNIFORM,
-            ),
+            params: buffer(device, "rain rainfall view", size_of::<RainfallView>() as u64, PARAMS),
             records: buffer(device, "rain drop records", RECORD_BYTES, storage),
             streaks: buffer(device, "rain streaks", STREAK_BYTES, storage),
             near_list: buffer(device, "rain near drops", 4, storage),
@@ -265,17 +261,17 @@ impl RainfallViewGpu {
         match input.drops {
             Drops::Listed(container, _) => {
                 self.chooses = false;
-                let uniform = input.uniform(&container.classes);
-                self.upload(device, queue, gpu, uniform, container.records.len() as u32);
+                let params = input.params(&container.classes);
+                self.upload(device, queue, gpu, params, container.records.len() as u32);
                 self.list(queue, &container.records[..self.most as usize]);
             }
             Drops::Chosen(choice) => {
                 self.chooses = true;
                 let cells = choice.cells();
                 let placements = cells.placements();
-                self.upload(device, queue, gpu, input.uniform(&placements), choice.most_drops);
+                self.upload(device, queue, gpu, input.params(&placements), choice.most_drops);
                 let targets = ChoiceTargets {
-                    view: &self.uniform,
+                    view: &self.params,
                     arguments: &self.arguments,
                     records: &self.records,
                     near: &self.near_list,
@@ -302,21 +298,21 @@ impl RainfallViewGpu {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         gpu: &RainfallGpu,
-        mut uniform: RainfallView,
+        mut params: RainfallView,
         wanted: u32,
     ) {
-        self.guard_band = GuardBand::new(device, uniform.viewport.into());
-        uniform.guard_share = self.guard_band.map_or(1.0, |band| band.share());
+        self.guard_band = GuardBand::new(device, params.viewport.into());
+        params.guard_share = self.guard_band.map_or(1.0, |band| band.share());
         let holds = device.limits().max_storage_buffer_binding_size / STREAK_BYTES;
         let holds = u32::try_from(holds).unwrap_or(u32::MAX);
         self.most = wanted.min(holds);
-        self.panes = uniform.panes;
-        self.soft = uniform.soft > 0.0;
-        self.patterned = uniform.patterned > 0;
-        self.needs = ProjectKey::of(&uniform);
+        self.panes = params.panes;
+        self.soft = params.soft > 0.0;
+        self.patterned = params.patterned > 0;
+        self.needs = ProjectKey::of(&params);
         gpu.project.prepare(device, self.needs);
         self.grow(device, self.most, holds);
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
     }
 
     fn bind(&mut self, device: &wgpu::Device, gpu: &RainfallGpu, textures: RainfallTextures) {
@@ -330,7 +326,7 @@ impl RainfallViewGpu {
             label: Some("rain rainfall project"),
             layout: &gpu.project.layout,
             entries: &[
-                entry(0, self.uniform.as_entire_binding()),
+                entry(0, self.params.as_entire_binding()),
                 entry(1, self.records.as_entire_binding()),
                 entry(2, self.streaks.as_entire_binding()),
                 entry(3, wgpu::BindingResource::TextureView(&cover)),
@@ -341,7 +337,7 @@ impl RainfallViewGpu {
             ],
         }));
         let even = [
-            entry(0, self.uniform.as_entire_binding()),
+            entry(0, self.params.as_entire_binding()),
             entry(1, self.streaks.as_entire_binding()),
         ];
         self.draw = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -349,13 +345,13 @@ impl RainfallViewGpu {
             layout: &gpu.draw.layout,
             entries: &even,
         }));
-        let [uniform, streaks] = even;
+        let [params, streaks] = even;
         self.near = self.patterned.then(|| {
             device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("rain rainfall near"),
                 layout: &gpu.near.layout,
                 entries: &[
-                    uniform,
+                    params,
                     streaks,
                     entry(2, wgpu::BindingResource::TextureView(&scene)),
                     entry(3, self.records.as_entire_binding()),
@@ -403,7 +399,7 @@ impl RainfallViewGpu {
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         let own = [
-            &self.uniform,
+            &self.params,
             &self.records,
             &self.streaks,
             &self.near_list,

@@ -3,7 +3,7 @@
 
 use std::sync::OnceLock;
 
-use crate::bindings::{compute_pipeline_with, sampler_entry, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline_with, params_entry, sampler_entry, storage_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::RainfallView;
 
@@ -82,7 +82,7 @@ impl Project {
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain rainfall project"),
             entries: &[
-                uniform_entry(0, compute, size_of::<RainfallView>()),
+                params_entry(device, 0, compute, size_of::<RainfallView>()),
                 storage_entry(1, compute, true),
                 storage_entry(2, compute, false),
                 texture_entry(

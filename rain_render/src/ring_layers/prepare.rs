@@ -5,9 +5,10 @@ use std::sync::Arc;
 use rain_core::waves::CircleMap;
 
 use super::params::RingLayerFrame;
-use crate::bindings::{compute_pipeline, storage_entry, storage_texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, params_entry, storage_entry, storage_texture_entry};
 use crate::compose;
 use crate::gpu_types::RingLayerParams;
+use crate::params_space::PARAMS;
 use crate::slope_mips::{SLOPE_FORMAT, SlopeMipsGpu, SlopeMipsTarget};
 
 /// Everything of the pass that lives as long as the device.
@@ -25,7 +26,7 @@ impl RingLayersGpu {
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain ring layers"),
             entries: &[
-                uniform_entry(0, compute, size_of::<RingLayerParams>()),
+                params_entry(device, 0, compute, size_of::<RingLayerParams>()),
                 storage_entry(1, compute, true),
                 storage_texture_entry(2, compute, SLOPE_FORMAT),
             ],
@@ -49,7 +50,7 @@ struct Bound {
 /// The circle texture, and what a frame brings.
 #[derive(Debug)]
 pub struct RingLayerGpu {
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     bound: Option<Bound>,
     pub(super) groups: u32,
 }
@@ -59,10 +60,10 @@ impl RingLayerGpu {
     #[must_use]
     pub fn new(device: &wgpu::Device) -> Self {
         Self {
-            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+            params: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("rain ring layers"),
                 size: size_of::<RingLayerParams>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                usage: PARAMS | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
             bound: None,
@@ -86,7 +87,7 @@ impl RingLayerGpu {
         if !self.bound.as_ref().is_some_and(same) {
             self.bind(device, queue, gpu, mips, map, frame);
         }
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&frame.params));
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&frame.params));
         self.groups = frame.params.cells.div_ceil(8);
     }
 
@@ -112,7 +113,7 @@ impl RingLayerGpu {
             ..Default::default()
         });
         let resources = [
-            self.uniform.as_entire_binding(),
+            self.params.as_entire_binding(),
             buffer.as_entire_binding(),
             wgpu::BindingResource::TextureView(&finest),
         ];
@@ -142,6 +143,6 @@ impl RingLayerGpu {
     /// GPU memory without the map. Units: bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> u64 {
-        self.uniform.size() + self.bound.as_ref().map_or(0, |bound| bound.buffer.size())
+        self.params.size() + self.bound.as_ref().map_or(0, |bound| bound.buffer.size())
     }
 }

@@ -1,4 +1,4 @@
-//! Plain inputs of the pass and how they become the uniform.
+//! Plain inputs of the pass and how they become its parameters.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use rain_core::rainfall::Lamp;
@@ -170,9 +170,9 @@ impl SplashInput<'_> {
         self.mouths.len().min(MAX_MOUTHS) as u32
     }
 
-    /// The uniform of this view.
+    /// The parameters of this view.
     #[must_use]
-    pub fn uniform(&self) -> SplashView {
+    pub fn params(&self) -> SplashView {
         let [a, b, c] = self.field.stream;
         let mut classes = [[0.0; 4]; rain_core::rainfall::CLASS_COUNT];
         for ((slot, [start, span, bend]), weight) in

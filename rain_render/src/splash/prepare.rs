@@ -1,11 +1,12 @@
 //! Pipelines that live with the device, buffers that live with a view.
 
 use crate::bindings::{
-    compute_pipeline, linear_sampler, one_texel, sampler_entry, storage_entry, texture_entry, uniform_entry,
+    compute_pipeline, linear_sampler, one_texel, params_entry, sampler_entry, storage_entry, texture_entry,
 };
 use crate::compose;
 use crate::gpu_types::{SplashDraw, SplashFind, SplashPart, SplashView, SpoutMouth};
 use crate::overlay::Overlay;
+use crate::params_space::PARAMS;
 use crate::rainfall::DEPTH_FORMAT;
 
 use super::params::MAX_MOUTHS;
@@ -42,7 +43,7 @@ pub struct SplashTextures<'a> {
 /// Buffers and bind groups of one view; grown, never shrunk.
 #[derive(Debug)]
 pub struct SplashViewGpu {
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     places: wgpu::Buffer,
     finds: wgpu::Buffer,
     parts: wgpu::Buffer,
@@ -66,7 +67,7 @@ impl SplashGpu {
         let make_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain splash make"),
             entries: &[
-                uniform_entry(0, compute, size_of::<SplashView>()),
+                params_entry(device, 0, compute, size_of::<SplashView>()),
                 storage_entry(1, compute, false),
                 storage_entry(2, compute, false),
                 storage_entry(3, compute, false),
@@ -97,7 +98,7 @@ impl SplashGpu {
             "rain splash draw",
             "splash_draw",
             &[
-                uniform_entry(0, raster, size_of::<SplashView>()),
+                params_entry(device, 0, raster, size_of::<SplashView>()),
                 storage_entry(1, wgpu::ShaderStages::VERTEX, true),
                 texture_entry(2, wgpu::ShaderStages::FRAGMENT, depth, wgpu::TextureViewDimension::D2),
             ],
@@ -135,11 +136,11 @@ impl SplashViewGpu {
     pub fn new(device: &wgpu::Device) -> Self {
         let storage = wgpu::BufferUsages::STORAGE;
         Self {
-            uniform: buffer(
+            params: buffer(
                 device,
                 "rain splash view",
                 size_of::<SplashView>(),
-                wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                PARAMS | wgpu::BufferUsages::COPY_DST,
             ),
             places: buffer(device, "rain splash places", 4, storage),
             finds: buffer(device, "rain splash finds", size_of::<SplashFind>(), storage),
@@ -209,9 +210,9 @@ impl SplashViewGpu {
         if !bytes.is_empty() {
             queue.write_buffer(&self.mouths, 0, bytes);
         }
-        let uniform = input.uniform();
-        self.panes = uniform.panes;
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        let params = input.params();
+        self.panes = params.panes;
+        queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view =
             |texture: Option<&wgpu::TextureView>, fallback: &wgpu::TextureView| texture.unwrap_or(fallback).clone();
@@ -223,7 +224,7 @@ impl SplashViewGpu {
             label: Some("rain splash make"),
             layout: &gpu.make_layout,
             entries: &[
-                entry(0, self.uniform.as_entire_binding()),
+                entry(0, self.params.as_entire_binding()),
                 entry(1, self.places.as_entire_binding()),
                 entry(2, self.parts.as_entire_binding()),
                 entry(3, self.arguments.as_entire_binding()),
@@ -239,7 +240,7 @@ impl SplashViewGpu {
             label: Some("rain splash draw"),
             layout: &gpu.draw.layout,
             entries: &[
-                entry(0, self.uniform.as_entire_binding()),
+                entry(0, self.params.as_entire_binding()),
                 entry(1, self.parts.as_entire_binding()),
                 entry(2, wgpu::BindingResource::TextureView(&scene)),
             ],

@@ -7,6 +7,7 @@ use super::params::{SLOT, STREAK_FORMAT, layer_bytes, levels, row_bytes, tiles};
 use crate::bindings::{compute_pipeline, storage_entry};
 use crate::compose;
 use crate::gpu_types::{StreakLevel, StreakTile};
+use crate::params_space::{PARAMS, ParamsSpace};
 
 /// Everything of the pass that lives as long as the device.
 #[derive(Debug)]
@@ -27,7 +28,7 @@ impl StreakTextureGpu {
             binding,
             visibility: compute,
             ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
+                ty: ParamsSpace::of(device).binding(),
                 has_dynamic_offset: true,
                 min_binding_size: wgpu::BufferSize::new(size as u64),
             },
@@ -191,11 +192,7 @@ impl StreakArray {
         for (slot, bytes) in slots.chunks_exact_mut(SLOT).zip(all) {
             slot[..bytes.len()].copy_from_slice(bytes);
         }
-        let parameters = buffer(
-            "rain streak texture parameters",
-            slots.len() as u64,
-            wgpu::BufferUsages::UNIFORM | to,
-        );
+        let parameters = buffer("rain streak texture parameters", slots.len() as u64, PARAMS | to);
         queue.write_buffer(&parameters, 0, &slots);
         let drop_bytes: &[u8] = bytemuck::cast_slice(&drops);
         let drop_buffer = buffer("rain streak texture drops", drop_bytes.len() as u64, storage | to);

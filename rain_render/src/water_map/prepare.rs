@@ -3,11 +3,12 @@
 use super::frame::WaterMapFrame;
 use super::params::{MAX_LEVELS, WATER_MAP_FORMAT, WaterMapSettings};
 use super::press::MAX_PRESSES;
-use crate::bindings::{compute_pipeline, one_texel, storage_entry, texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, one_texel, params_entry, storage_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::{CoverParams, WaterMapParams, WaterStamp};
+use crate::params_space::PARAMS;
 
-/// Distance of two levels' uniforms, and of two stamps'.
+/// Distance of two levels' parameters, and of two stamps'.
 pub(super) const LEVEL_STRIDE: usize = 512;
 pub(super) const STAMP_STRIDE: usize = 256;
 /// Most stamps in a frame: each press on each level.
@@ -52,7 +53,7 @@ impl WaterMapPasses {
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain water map"),
             entries: &[
-                dynamic(uniform_entry(0, compute, size_of::<WaterMapParams>())),
+                dynamic(params_entry(device, 0, compute, size_of::<WaterMapParams>())),
                 storage_entry(1, compute, false),
                 storage_entry(2, compute, true),
                 storage_entry(3, compute, true),
@@ -74,7 +75,7 @@ impl WaterMapPasses {
         });
         let stamp_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain water stamps"),
-            entries: &[dynamic(uniform_entry(0, compute, size_of::<WaterStamp>()))],
+            entries: &[dynamic(params_entry(device, 0, compute, size_of::<WaterStamp>()))],
         });
         let module = compose::shader(device, "water_map");
         let pipeline = |entry: &str, groups: &[&wgpu::BindGroupLayout]| {
@@ -96,7 +97,7 @@ impl WaterMapPasses {
 #[derive(Debug)]
 pub struct WaterMapGpu {
     pub(super) texels: u32,
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     stamps: wgpu::Buffer,
     water: wgpu::Buffer,
     ground: wgpu::Buffer,
@@ -122,11 +123,11 @@ fn storage(device: &wgpu::Device, label: &str, bytes: usize) -> wgpu::Buffer {
     })
 }
 
-fn uniform(device: &wgpu::Device, label: &str, bytes: usize) -> wgpu::Buffer {
+fn params(device: &wgpu::Device, label: &str, bytes: usize) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: bytes as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        usage: PARAMS | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
 }
@@ -160,7 +161,7 @@ impl WaterMapGpu {
     ) -> Self {
         let texels = map.width();
         let count = texels as usize * texels as usize * map.depth_or_array_layers() as usize;
-        let stamps = uniform(device, "rain water stamps", STAMP_STRIDE * MOST_STAMPS);
+        let stamps = params(device, "rain water stamps", STAMP_STRIDE * MOST_STAMPS);
         let stamp_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain water stamps"),
             layout: &passes.stamp_layout,
@@ -175,7 +176,7 @@ impl WaterMapGpu {
         });
         Self {
             texels,
-            uniform: uniform(device, "rain water map", LEVEL_STRIDE * MAX_LEVELS),
+            params: params(device, "rain water map", LEVEL_STRIDE * MAX_LEVELS),
             stamps,
             water: storage(device, "rain water map", count * 12),
             ground: storage(device, "rain water map ground", 0),
@@ -205,7 +206,7 @@ impl WaterMapGpu {
     #[must_use]
     pub fn memory_bytes(&self) -> u64 {
         [
-            &self.uniform,
+            &self.params,
             &self.stamps,
             &self.water,
             &self.ground,
@@ -248,7 +249,7 @@ impl WaterMapGpu {
                 .resize(self.staging.len().next_multiple_of(LEVEL_STRIDE), 0);
         }
         if !self.staging.is_empty() {
-            queue.write_buffer(&self.uniform, 0, &self.staging);
+            queue.write_buffer(&self.params, 0, &self.staging);
         }
         self.staging.clear();
         for (level, stamp) in frame.stamps.iter().take(MOST_STAMPS) {
@@ -265,7 +266,7 @@ impl WaterMapGpu {
         }
         let texture = |view| wgpu::BindingResource::TextureView(view);
         let params = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &self.uniform,
+            buffer: &self.params,
             offset: 0,
             size: wgpu::BufferSize::new(size_of::<WaterMapParams>() as u64),
         });

@@ -241,7 +241,7 @@ impl Rules {
         self.speed_m_s * self.speed_m_s / GRAVITY
     }
 
-    /// The uniform, but for what changes from frame to frame.
+    /// The parameters, but for what changes from frame to frame.
     pub fn params(&self) -> WaveParams {
         let rim = f64::from(self.rim_cells);
         WaveParams {

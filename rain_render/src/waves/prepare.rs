@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use super::frame::{MAX_STEPS, WaveFrame};
-use crate::bindings::{compute_pipeline, storage_entry, storage_texture_entry, uniform_entry};
+use crate::bindings::{compute_pipeline, params_entry, storage_entry, storage_texture_entry};
 use crate::compose;
 use crate::gpu_types::{WaveBin, WaveParams, WaveSource};
+use crate::params_space::PARAMS;
 use crate::slope_mips::{SLOPE_FORMAT, SlopeMipsGpu, SlopeMipsTarget};
 
-/// Distance of the uniforms of two steps: the largest alignment that a device may ask for.
+/// Distance of the parameters of two steps: the largest alignment that a device may ask for.
 pub(super) const STRIDE: usize = 256;
 
 /// Everything of the pass that lives as long as the device.
@@ -28,14 +29,14 @@ impl WavesGpu {
     #[must_use]
     pub fn new(device: &wgpu::Device) -> Self {
         let compute = wgpu::ShaderStages::COMPUTE;
-        let mut uniform = uniform_entry(0, compute, size_of::<WaveParams>());
-        if let wgpu::BindingType::Buffer { has_dynamic_offset, .. } = &mut uniform.ty {
+        let mut params = params_entry(device, 0, compute, size_of::<WaveParams>());
+        if let wgpu::BindingType::Buffer { has_dynamic_offset, .. } = &mut params.ty {
             *has_dynamic_offset = true;
         }
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain waves"),
             entries: &[
-                uniform,
+                params,
                 storage_entry(1, compute, false),
                 storage_entry(2, compute, false),
                 storage_entry(3, compute, true),
@@ -77,7 +78,7 @@ pub(super) struct Recorded {
 #[derive(Debug)]
 pub struct WaveTileGpu {
     pub(super) cells: u32,
-    uniform: wgpu::Buffer,
+    params: wgpu::Buffer,
     levels: [wgpu::Buffer; 2],
     depths: wgpu::Buffer,
     sources: wgpu::Buffer,
@@ -111,10 +112,10 @@ impl WaveTileGpu {
             entries: list(device, "rain wave entries", entries * 4),
             sums: list(device, "rain wave sums", sources * 16),
         };
-        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+        let params = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("rain wave steps"),
             size: (STRIDE * (MAX_STEPS + 1)) as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            usage: PARAMS | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         let field = |label| {
@@ -127,7 +128,7 @@ impl WaveTileGpu {
         };
         let levels = [field("rain wave level"), field("rain wave level")];
         let depths = field("rain wave depths");
-        let groups = groups(device, gpu, &uniform, &levels, &depths, &buffers);
+        let groups = groups(device, gpu, &params, &levels, &depths, &buffers);
         let Lists {
             sources,
             bins,
@@ -136,7 +137,7 @@ impl WaveTileGpu {
         } = buffers;
         Self {
             cells,
-            uniform,
+            params,
             levels,
             depths,
             sources,
@@ -178,7 +179,7 @@ impl WaveTileGpu {
         self.staging.clear();
         self.frame.clear();
         let length = |range: &Range<u32>| range.end - range.start;
-        // The last uniform is that of the map.
+        // The last parameters are that of the map.
         for index in 0..=plan.steps.len() {
             let mut params = params;
             if let Some(step) = plan.steps.get(index) {
@@ -192,7 +193,7 @@ impl WaveTileGpu {
             self.staging.extend_from_slice(bytemuck::bytes_of(&params));
             self.staging.resize((index + 1) * STRIDE, 0);
         }
-        queue.write_buffer(&self.uniform, 0, &self.staging);
+        queue.write_buffer(&self.params, 0, &self.staging);
         self.settle = frame.settle;
         self.balance = frame.balance;
         self.first = self.now;
@@ -225,7 +226,7 @@ impl WaveTileGpu {
                 entries: self.entries.clone(),
                 sums: self.sums.clone(),
             };
-            self.groups = groups(device, gpu, &self.uniform, &self.levels, &self.depths, &lists);
+            self.groups = groups(device, gpu, &self.params, &self.levels, &self.depths, &lists);
         }
     }
 
@@ -245,7 +246,7 @@ impl WaveTileGpu {
     /// GPU memory without the map. Units: bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> u64 {
-        let lists = [&self.uniform, &self.sources, &self.bins, &self.entries, &self.sums];
+        let lists = [&self.params, &self.sources, &self.bins, &self.entries, &self.sums];
         3 * self.depths.size() + lists.iter().map(|list| list.size()).sum::<u64>()
     }
 }
@@ -285,19 +286,19 @@ fn map_group(device: &wgpu::Device, gpu: &WavesGpu, map: &wgpu::Texture) -> wgpu
 fn groups(
     device: &wgpu::Device,
     gpu: &WavesGpu,
-    uniform: &wgpu::Buffer,
+    params: &wgpu::Buffer,
     levels: &[wgpu::Buffer; 2],
     depths: &wgpu::Buffer,
     lists: &Lists,
 ) -> [wgpu::BindGroup; 2] {
-    let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-        buffer: uniform,
+    let params = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+        buffer: params,
         offset: 0,
         size: wgpu::BufferSize::new(size_of::<WaveParams>() as u64),
     });
     [0, 1].map(|now: usize| {
         let resources = [
-            uniform.clone(),
+            params.clone(),
             levels[now].as_entire_binding(),
             levels[1 - now].as_entire_binding(),
             depths.as_entire_binding(),

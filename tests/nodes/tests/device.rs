@@ -149,3 +149,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 "
     )
 }
+
+#[test]
+fn a_device_with_the_limits_of_every_webgpu_has_its_parameters_uniform() {
+    use rain_render::params_space::{ParamsSpace, STORAGE_BUFFERS};
+    let Some(device) = device() else { return };
+    assert!(device.device.limits().max_storage_buffers_per_shader_stage < STORAGE_BUFFERS);
+    assert_eq!(ParamsSpace::of(&device.device), ParamsSpace::Uniform);
+}

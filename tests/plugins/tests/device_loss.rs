@@ -98,3 +98,21 @@ fn puddles_films_and_mirrors_are_uploaded_again_after_the_device_was_lost() {
     let found = difference(&before, &after);
     assert!(found.mean < 0.05 * changed.mean, "{found:?}, rain {changed:?}");
 }
+
+#[test]
+fn on_a_software_device_parameters_are_in_storage() {
+    use rain_render::params_space::{ParamsSpace, STORAGE_BUFFERS};
+    if !gpu::available() {
+        return;
+    }
+    let test = TestApp::new([16, 9], true);
+    let device = test.app.world().resource::<RenderDevice>().wgpu_device();
+    let software = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+    assert!(!software || device.limits().max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS);
+    let expected = if software {
+        ParamsSpace::Storage
+    } else {
+        ParamsSpace::Uniform
+    };
+    assert_eq!(ParamsSpace::of(device), expected);
+}

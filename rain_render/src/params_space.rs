@@ -1,0 +1,63 @@
+//! Where passes read their parameters from.
+
+use std::borrow::Cow;
+
+/// What a buffer of parameters is made for: it serves in either space.
+pub(crate) const PARAMS: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::STORAGE);
+
+/// Storage buffers that the pass with most of them then has in a stage.
+pub const STORAGE_BUFFERS: u32 = 10;
+
+/// Address space of what a pass's invocations only read and all read alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParamsSpace {
+    /// GPUs have caches for these, and more bindings in all.
+    Uniform,
+    /// Mesa's software Vulkan builds shaders anew, with the numbers that branches test written into them, whenever a pass is bound
+    /// with uniform buffers, and keeps all of them: 8 MB and 60 ms a frame of rain. It leaves storage buffers alone.
+    Storage,
+}
+
+impl ParamsSpace {
+    /// The space for a device: storage for one that is software and allows all of [`STORAGE_BUFFERS`] in a stage, which is more
+    /// than every WebGPU does.
+    #[must_use]
+    pub fn of(device: &wgpu::Device) -> Self {
+        let software = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        if software && device.limits().max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS {
+            Self::Storage
+        } else {
+            Self::Uniform
+        }
+    }
+
+    /// WGSL that declares its parameters uniform, for this space.
+    #[must_use]
+    pub fn source(self, module: &str) -> Cow<'_, str> {
+        match self {
+            Self::Uniform => module.into(),
+            Self::Storage => module.replace("var<uniform>", "var<storage, read>").into(),
+        }
+    }
+
+    /// How a layout has a buffer of parameters.
+    pub(crate) fn binding(self) -> wgpu::BufferBindingType {
+        match self {
+            Self::Uniform => wgpu::BufferBindingType::Uniform,
+            Self::Storage => wgpu::BufferBindingType::Storage { read_only: true },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_are_declared_in_the_space_they_are_read_from() {
+        let module = "var<uniform> a: A; var<storage, read_write> b: B;";
+        assert_eq!(ParamsSpace::Uniform.source(module), module);
+        let stored = "var<storage, read> a: A; var<storage, read_write> b: B;";
+        assert_eq!(ParamsSpace::Storage.source(module), stored);
+    }
+}
