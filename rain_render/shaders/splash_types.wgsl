@@ -39,6 +39,8 @@ struct SplashView {
     sun: vec4<f32>,
     // Four side planes through the eye, unit normals inward; w: their offset, m.
     planes: array<vec4<f32>, 4>,
+    // From where light is seen to the eye, m: 0, or far back along the rays of a view without perspective; w: 1 in such a view.
+    rays: vec4<f32>,
     // Where the air goes, m/s; w unused.
     wind: vec4<f32>,
     // Random stream; w: the present time slot.
@@ -49,7 +51,7 @@ struct SplashView {
     fraction: vec2<f32>,
     // Cell under the eye (x, z).
     cell: vec2<i32>,
-    // Focal length, px.
+    // Focal length, px; px/m without perspective.
     focal: f32,
     // Near plane, m.
     near: f32,
@@ -77,8 +79,8 @@ struct SplashView {
     // Mouths that water pours from, and how far they are seen, m.
     mouths: u32,
     mouth_reach: f32,
-    pad_a: f32,
-    pad_b: f32,
+    // What is drawn of crowns and of thrown drops at any distance.
+    shares: vec2<f32>,
     cover: CoverParams,
     levels: LevelMapParams,
     // Tables of SplashField in rain_core: of counts and of classes, a hash each.

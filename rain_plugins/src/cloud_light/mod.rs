@@ -11,7 +11,7 @@ use rain_core::optics::{
 use rain_ecs::prelude::*;
 
 use crate::held::{Held, keep_good};
-use crate::rainfall::{RainView, leading_view};
+use crate::rainfall::{RainView, ViewPlace, leading_view};
 
 /// Put on a [`DirectionalLight`], or on a camera with an [`EnvironmentMapLight`] or a [`Skybox`]: the water of the cloud over
 /// the leading view's rain takes its light out.
@@ -180,7 +180,7 @@ fn restore(
 pub(crate) fn dim(
     clock: Res<RainClock>,
     rain: RainQueries,
-    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, ViewPlace), With<RainView>>,
     mut errors: MessageWriter<RainConfigError>,
     mut before_s: Local<Option<f64>>,
     mut lights: Query<Dimmed>,
@@ -190,7 +190,7 @@ pub(crate) fn dim(
     if lights.is_empty() {
         return;
     }
-    let rate = leading_view(views).map_or(0.0, |place| rain.rain_at(place.translation().as_dvec3()));
+    let rate = leading_view(views).map_or(0.0, |view| rain.rain_at(view.place().as_dvec3()));
     for (entity, settings, mut state, sun, environment, sky) in &mut lights {
         let state = &mut *state;
         if settings.is_changed() {

@@ -62,7 +62,7 @@ pub(super) fn judge_air(
     cover: Option<Res<CoverField>>,
     meshes: Res<Assets<Mesh>>,
     materials: Res<Assets<StandardMaterial>>,
-    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, &Projection, &GlobalTransform), With<RainView>>,
     surfaces: Query<Surface>,
     changed: Query<(), ChangedSurface>,
     mut removed: RemovedComponents<Mesh3d>,
@@ -80,7 +80,11 @@ pub(super) fn judge_air(
         surroundings.stale = true;
         return;
     };
-    let lead = leading_view(views.iter().map(|(view, camera, at)| (view, camera, (view, at))));
+    // Without perspective a camera may stand anywhere along its rays: it is in no room.
+    let eyes = views
+        .iter()
+        .filter(|(_, _, projection, _)| !matches!(projection, Projection::Orthographic(_)));
+    let lead = leading_view(eyes.map(|(view, camera, _, at)| (view, camera, (view, at))));
     let Some((view, at)) = lead else { return };
     let eye = at.translation().as_dvec3();
     let s = &mut *surroundings;

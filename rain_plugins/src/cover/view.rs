@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::air::{AirAroundView, Surroundings, judge_air};
 use super::projection::ShearedProjection;
-use crate::rainfall::{RainView, leading_view};
+use crate::rainfall::{RainView, ViewPlace, leading_view};
 use crate::render_adapter::{DeferredPrepass, RenderApp, cover_camera, cover_image};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
@@ -190,7 +190,7 @@ fn map_is_wanted(field: Res<RainfallField>, surface: Option<Res<SurfaceState>>) 
 fn watch_occluders(
     mut watch: ResMut<OccluderWatch>,
     settings: Res<CoverSettings>,
-    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, ViewPlace), With<RainView>>,
     occluders: Query<Occluder>,
     mut removed: RemovedComponents<Mesh3d>,
     mut meshes: MessageReader<AssetEvent<Mesh>>,
@@ -203,7 +203,7 @@ fn watch_occluders(
         | images.read().any(|e| matches!(e, AssetEvent::LoadedWithDependencies { .. }));
     let gone = removed.read().count() > 0;
     watch.changed |= asset_changed | gone;
-    let Some(eye) = leading_view(views).map(GlobalTransform::translation) else {
+    let Some(eye) = leading_view(views).map(|view| view.place()) else {
         return;
     };
     let reach = settings.extent_m;
@@ -237,7 +237,7 @@ fn watch_occluders(
 
 #[derive(QueryData)]
 struct SeenFrom {
-    at: &'static GlobalTransform,
+    around: ViewPlace,
     layers: Option<&'static RenderLayers>,
 }
 
@@ -309,10 +309,10 @@ fn aim_view(
     let extent = f64::from(settings.extent_m.clamp(10.0, 400.0));
     let active = views.iter().filter(|(_, camera, _)| camera.is_active);
     let view = lead.map(|l| {
-        let own = l.at.translation().as_dvec3();
+        let own = l.around.place().as_dvec3();
         centre_of(
             own,
-            active.map(|(_, _, v)| v.at.translation().as_dvec3()),
+            active.map(|(_, _, v)| v.around.place().as_dvec3()),
             0.5 * extent - margin,
         )
     });

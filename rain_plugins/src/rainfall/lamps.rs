@@ -6,9 +6,10 @@ use bevy::light::{PointLight, SpotLight};
 use bevy::prelude::*;
 use rain_core::rainfall::{Lamp, MAX_LAMPS};
 
+use super::parallel::ViewPlace;
 use super::view::RainViewFrame;
 
-/// Rain that lamps are chosen for: a ball ahead of the eye. Units: m.
+/// Rain that lamps are chosen for: a ball ahead of the eye, or around what a view without perspective looks at. Units: m.
 const AHEAD_M: f32 = 15.0;
 /// Its radius; it holds the eye. Units: m.
 const REACH_M: f32 = 18.0;
@@ -120,23 +121,17 @@ pub(crate) fn keep_strongest(found: &mut Vec<(f32, Lamp)>, most: usize, out: &mu
     }));
 }
 
-/// The strongest lamps on the rain ahead of an eye.
-fn strongest(
-    lamps: impl Iterator<Item = Lamp>,
-    eye: Vec3,
-    ahead: Vec3,
-    found: &mut Vec<(f32, Lamp)>,
-    out: &mut Vec<Lamp>,
-) {
+/// The strongest lamps on the rain about a place.
+fn strongest(lamps: impl Iterator<Item = Lamp>, amid: Vec3, found: &mut Vec<(f32, Lamp)>, out: &mut Vec<Lamp>) {
     found.clear();
     found.extend(lamps.filter_map(|lamp| {
         let own = Lamp {
-            position_m: lamp.position_m - eye,
+            position_m: lamp.position_m - amid,
             // Where a lamp stands amid the rain, a metre of distance is enough to tell it from others.
             radius_m: lamp.radius_m.max(1.0),
             ..lamp
         };
-        let share = own.bound(ahead * AHEAD_M, REACH_M);
+        let share = own.bound(Vec3::ZERO, REACH_M);
         (share > 0.0 && lamp.position_m.is_finite()).then_some((share, lamp))
     }));
     keep_strongest(found, MAX_LAMPS, out);
@@ -145,20 +140,14 @@ fn strongest(
 pub(crate) fn choose_lamps(
     lamps: SceneLamps,
     mut found: Local<Vec<(f32, Lamp)>>,
-    mut views: Query<(&Camera, &GlobalTransform, &mut ViewLamps), With<RainViewFrame>>,
+    mut views: Query<(&Camera, ViewPlace, &mut ViewLamps), With<RainViewFrame>>,
 ) {
-    for (camera, transform, mut chosen) in &mut views {
+    for (camera, view, mut chosen) in &mut views {
         if !camera.is_active {
             continue;
         }
         let mut out = Arc::try_unwrap(std::mem::take(&mut chosen.0)).unwrap_or_default();
-        strongest(
-            shining(&lamps),
-            transform.translation(),
-            transform.forward().into(),
-            &mut found,
-            &mut out,
-        );
+        strongest(shining(&lamps), view.inward(AHEAD_M), &mut found, &mut out);
         chosen.0 = Arc::new(out);
     }
 }
@@ -169,13 +158,7 @@ mod tests {
 
     fn chosen(lamps: &[Lamp]) -> Vec<Lamp> {
         let mut out = Vec::new();
-        strongest(
-            lamps.iter().copied(),
-            Vec3::ZERO,
-            Vec3::NEG_Z,
-            &mut Vec::new(),
-            &mut out,
-        );
+        strongest(lamps.iter().copied(), Vec3::NEG_Z * AHEAD_M, &mut Vec::new(), &mut out);
         out
     }
 

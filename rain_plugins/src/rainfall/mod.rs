@@ -6,6 +6,7 @@ mod lamps;
 mod lead;
 mod motion;
 mod panes;
+mod parallel;
 mod settings;
 mod view;
 
@@ -17,6 +18,7 @@ pub(crate) use lamps::{SceneLamps, keep_strongest, shining};
 pub(crate) use lead::leading_view;
 pub use motion::ViewMotion;
 pub use panes::{SeenThrough, ViewPanes};
+pub(crate) use parallel::{Picture, ViewPlace, ViewPlaceItem, seen_place};
 pub use rain_core::rainfall::{
     DetailLaw, FollowSettings, FollowShape, LatticeLevel, LatticeSettings, StreakTextureSettings,
 };

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use bevy::math::{DVec2, Vec4};
+use bevy::math::{DVec2, DVec3, Vec4};
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::areas::AreaField;
 use rain_core::rainfall::{
-    Container, DetailLaw, DropChoice, FADE_END, Follow, FollowSettings, LEAD_CAP_M, ParallelView, RANGE_CAP_M,
-    RainViewVolume, RateLadder, Spectrum, UnevenRain, expected_drops, quality_for_budget,
+    Container, DetailLaw, DropChoice, FADE_END, Follow, FollowSettings, LEAD_CAP_M, RANGE_CAP_M, RainViewVolume,
+    RateLadder, Spectrum, UnevenRain, expected_drops, quality_for_budget,
 };
 use rain_ecs::prelude::*;
 use rain_render::rainfall::Shutter;
@@ -18,6 +18,7 @@ use super::frame_budget::{RainFrameBudget, RainShare, hold_frame_budget};
 use super::lamps::{ViewLamps, choose_lamps};
 use super::motion::ViewMotion;
 use super::panes::{SeenThrough, ViewPanes, choose_panes, mark_blended};
+use super::parallel::parallel_volume;
 use super::settings::CardSettings;
 use crate::cover::AirAroundView;
 use crate::held::keep_good;
@@ -75,7 +76,8 @@ pub struct RainView {
     pub near_patterns: Option<bool>,
     /// Orthographic views only: how far ahead of the camera the middle of the drawn rain lies, which reaches 15 m before and
     /// behind it. Units: m. Domain: [−10⁴, 10⁴]. `None`: just before the ground at height 0 that the picture's lower rim sees, so that
-    /// rain is even all over it; 10 m where it sees none.
+    /// rain is even all over it; 10 m where it sees none. Splashes, puddles, lamps and the map of cover are kept for what is seen
+    /// there in the middle of the picture; with `None` for the ground at height 0 there.
     pub focus_m: Option<f32>,
 }
 
@@ -346,30 +348,31 @@ pub(crate) fn choose_drops(
         }
         let settings = frame.settings;
         let size = camera.physical_viewport_size().unwrap_or_default();
+        let clip_from_view = projection.get_clip_from_view();
+        let orthographic = matches!(projection, Projection::Orthographic(_));
+        let volume = if orthographic {
+            parallel_volume(clip_from_view, size, transform, &motion, &settings)
+        } else {
+            view_volume(clip_from_view, size, transform, &motion, settings.exposure_s)
+        };
         // The heaviest rain that the view's drops may be in.
         let spectrum = uneven.as_ref().map_or(*field.spectrum(), |rain| {
-            let eye = position.as_dvec3();
-            let reach = FADE_END * RANGE_CAP_M + LEAD_CAP_M;
+            let half = volume.parallel.map_or(DVec3::ZERO, |parallel| 0.5 * parallel.across_m);
+            let amid = volume.eye_m + half;
+            let reach = FADE_END * RANGE_CAP_M + LEAD_CAP_M + half.length();
             let rates = rain
                 .areas
-                .rates_within(DVec2::new(eye.x, eye.z), reach, rain.weather_mm_h);
+                .rates_within(DVec2::new(amid.x, amid.z), reach, rain.weather_mm_h);
             field.spectrum_at(rates[1])
         });
         let closed_in = air.closed_in == Some(entity);
         let raining = spectrum.intensity_mm_h > 0.0;
-        let orthographic = matches!(projection, Projection::Orthographic(_));
         let supported = orthographic || matches!(projection, Projection::Perspective(_));
         let skip = not_drawn(&settings, camera, supported, raining, closed_in);
         if let Some(reason) = skip {
             report.skipped(PassName::Rainfall, reason);
             continue;
         }
-        let clip_from_view = projection.get_clip_from_view();
-        let volume = if orthographic {
-            parallel_volume(clip_from_view, size, transform, &motion, &settings)
-        } else {
-            view_volume(clip_from_view, size, transform, &motion, settings.exposure_s)
-        };
         let budget = settings.budget(*software, &share);
         let of = QualityOf {
             spectrum,
@@ -504,76 +507,9 @@ pub(crate) fn view_volume(
     }
 }
 
-/// How far ahead of an orthographic camera the middle of the drawn rain lies, so that all of the picture has as much of it before the
-/// ground at height 0: before what the lower rim sees. 10 m where there is no ground ahead. Units: m.
-fn focus_m(height_m: f32, ahead: Vec3, half_height_m: f32) -> f32 {
-    let to_ground = -height_m / ahead.y;
-    if !(0.0..1e4).contains(&to_ground) {
-        return 10.0;
-    }
-    let nearest = to_ground - half_height_m * (1.0 - ahead.y * ahead.y).max(0.0).sqrt() / ahead.y.abs();
-    // From here on drops fade.
-    let clear = 0.8 * RANGE_CAP_M as f32;
-    (nearest - clear).max(0.5 * nearest.max(0.0))
-}
-
-/// An orthographic view as the container needs it.
-fn parallel_volume(
-    clip_from_view: Mat4,
-    size: UVec2,
-    transform: &GlobalTransform,
-    motion: &ViewMotion,
-    settings: &RainView,
-) -> RainViewVolume {
-    let (_, rotation, position) = transform.to_scale_rotation_translation();
-    let (sx, sy) = (clip_from_view.x_axis.x, clip_from_view.y_axis.y);
-    // Half of the picture, and its middle, which need not be before the camera.
-    let half = Vec2::new(1.0 / sx, 1.0 / sy).abs();
-    let middle = -clip_from_view.w_axis.truncate().truncate() / Vec2::new(sx, sy);
-    let middle = position + rotation * middle.extend(0.0);
-    let [right, up, ahead] = [Vec3::X, Vec3::Y, Vec3::NEG_Z].map(|axis| rotation * axis);
-    let focus = settings.focus_m.unwrap_or_else(|| focus_m(middle.y, ahead, half.y));
-    let eye = middle + ahead * focus - right * half.x;
-    RainViewVolume {
-        eye_m: eye.as_dvec3(),
-        eye_velocity_m_s: motion.velocity_m_s,
-        side_planes: [
-            right.extend(0.0),
-            (-right).extend(2.0 * half.x),
-            up.extend(half.y),
-            (-up).extend(half.y),
-        ],
-        focal_px: f64::from(0.5 * size.y as f32 / half.y) * RANGE_CAP_M,
-        solid_angle_sr: 0.0,
-        exposure_s: f64::from(settings.exposure_s),
-        turn_rad: f64::from(motion.turn_rad_s.length() * settings.exposure_s),
-        parallel: Some(ParallelView {
-            across_m: (right * 2.0 * half.x).as_dvec3(),
-            height_m: f64::from(2.0 * half.y),
-            ahead: ahead.as_dvec3(),
-        }),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_orthographic_view_is_focused_before_the_ground() {
-        // Straight down from 50 m; from the side at 30 degrees, where the lower rim sees the ground 8.7 m nearer; from near; level.
-        let slope = Vec3::new(0.0, -0.5, -0.75_f32.sqrt());
-        for (height, ahead, expected) in [
-            (50.0, Vec3::NEG_Y, 38.0),
-            (30.0, slope, 60.0 - 8.66 - 12.0),
-            (6.0, Vec3::NEG_Y, 3.0),
-            (2.0, Vec3::NEG_Z, 10.0),
-            (2.0, Vec3::Y, 10.0),
-        ] {
-            let found = focus_m(height, ahead, 5.0);
-            assert!((found - expected).abs() < 0.01, "{height} {ahead}: {found}");
-        }
-    }
 
     #[test]
     fn a_view_that_turns_says_so_but_by_no_more_than_a_quarter_of_itself() {

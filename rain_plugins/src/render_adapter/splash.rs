@@ -115,7 +115,9 @@ pub(super) fn prepare_splashes(
     splashes.views.retain(|entity, _| views.contains(*entity));
     for (entity, view, camera, splash, rain, prepass, msaa) in &views {
         let Some(shot) = &splash.shot else { continue };
-        let eye = view.world_from_view.translation().as_dvec3();
+        let aim = &shot.aim;
+        let origin = aim.from_m;
+        let eye = origin.as_dvec3();
         let rotation = view.world_from_view.rotation();
         let (now, before) = shot.motion.view_matrices(rotation, shot.exposure_s);
         let scene_depth: Option<&wgpu::TextureView> = match (msaa, prepass.and_then(ViewPrepassTextures::depth_view)) {
@@ -123,9 +125,13 @@ pub(super) fn prepare_splashes(
             _ => None,
         };
         let environment = rain.environment.and_then(|(id, scale)| Some((images.get(id)?, scale)));
-        let origin = view.world_from_view.translation();
+        // Without perspective splashes are seen from what they are around.
+        let moved = Mat4::from_translation(origin - view.world_from_view.translation());
         let lamps = rain.lamps.seen_from(origin, camera.exposure);
-        let panes = rain.panes.seen_from(origin);
+        let panes = match aim.parallel {
+            Some(_) => Vec::new(),
+            None => rain.panes.seen_from(origin),
+        };
         let from_eye = |step: &StepSplash| StepSplash {
             place_m: step.place_m - origin,
             ..*step
@@ -146,18 +152,28 @@ pub(super) fn prepare_splashes(
         let input = SplashInput {
             field: &shot.field,
             anchor: shot.anchor,
-            clip_from_eye: view.clip_from_view * now,
-            clip_from_eye_before: view.clip_from_view * before,
-            side_planes: shot.side_planes,
+            clip_from_eye: view.clip_from_view * now * moved,
+            clip_from_eye_before: view.clip_from_view * before * moved,
+            side_planes: aim.side_planes,
+            parallel: aim.parallel,
             wind_m_s: shot.wind_m_s,
             viewport_px: Vec2::new(view.viewport.z as f32, view.viewport.w as f32),
-            focal_px: shot.focal_px,
-            near_m: view.clip_from_view.w_axis.z,
+            focal_px: aim.focal_px,
+            near_m: if aim.parallel.is_some() {
+                0.0
+            } else {
+                view.clip_from_view.w_axis.z
+            },
             exposure_s: shot.exposure_s,
             contrast: shot.contrast,
-            soft_m: if scene_depth.is_some() { shot.soft_m } else { 0.0 },
-            reach_m: shot.reach_m,
-            near_reach_m: shot.near_reach_m,
+            soft_m: if scene_depth.is_some() && aim.parallel.is_none() {
+                shot.soft_m
+            } else {
+                0.0
+            },
+            reach_m: aim.reach_m[0],
+            near_reach_m: aim.reach_m[1],
+            shares: aim.shares,
             film_mm: surface.map_or(0.0, |s| s.state.y),
             capacity: shot.capacity,
             lighting: view_lighting(&scene, environment, camera.exposure),

@@ -3,6 +3,7 @@
 //!
 //! They are seen only: no state depends on them, and the water of puddles does not move under them.
 
+mod aim;
 mod feet;
 mod spouts;
 mod view;

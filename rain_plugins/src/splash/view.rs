@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use bevy::math::Vec4;
 use bevy::prelude::*;
 use rain_core::error::{ConfigError, in_range};
 use rain_core::rainfall::Spectrum;
@@ -11,10 +10,11 @@ use rain_ecs::prelude::*;
 use rain_ecs::splash::FootSystems;
 use rain_render::splash::{SpoutStream, StepSplash};
 
+use super::aim::SplashAim;
 use super::feet::{RecentSteps, frame_time_s, keep_steps};
 use super::spouts::{Pouring, SPOUT_REACH_M, in_air};
 use crate::cover::{AirAroundView, CoverMap};
-use crate::rainfall::{RainShare, RainView, SoftwareAdapter, ViewMotion, choose_drops, view_volume};
+use crate::rainfall::{RainShare, RainView, SoftwareAdapter, ViewMotion, choose_drops, seen_place, view_volume};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::schedule::RainViewSystems;
 use crate::surface::SurfaceState;
@@ -38,7 +38,8 @@ pub struct SplashSettings {
     /// adapter, 40,000 on a GPU. Domain: [0, 10⁶]. The number is spent on the largest splashes; those that are drawn
     /// show the light of those that are not.
     pub budget: Option<u32>,
-    /// Crowns are drawn to here, fading over the last third. Units: m. Domain: [0, 50]. Default: 14.
+    /// Crowns are drawn to here, fading over the last third. Units: m. Domain: [0, 50]. Default: 14. An orthographic picture counts as
+    /// far away as a lens of 45° would stand: 1.2 times its height.
     pub distance_m: f32,
     /// Thrown drops are drawn to here; further away they are less than a step of contrast. Units: m. Domain: [0, 50].
     /// Default: 3.5.
@@ -88,14 +89,11 @@ pub struct SplashMask(pub Handle<Image>);
 pub(crate) struct SplashShot {
     pub field: Arc<SplashField>,
     pub anchor: SplashAnchor,
-    pub side_planes: [Vec4; 4],
+    pub aim: SplashAim,
     pub wind_m_s: Vec3,
-    pub focal_px: f32,
     pub exposure_s: f32,
     pub contrast: f32,
     pub soft_m: f32,
-    pub reach_m: f32,
-    pub near_reach_m: f32,
     pub capacity: u32,
     /// Steps in water; places in the world.
     pub steps: Vec<StepSplash>,
@@ -227,9 +225,10 @@ fn aim_splashes(
         // A bad `RainView` has been named; the defaults stand in for it.
         let view = view.validated().unwrap_or_default();
         let size = camera.physical_viewport_size().unwrap_or_default();
+        let from = seen_place(projection, transform, view.focus_m);
         // Under areas the rain at the eye, in steps of 2 %: splashes are drawn near it.
         let spectrum = areas.map_or(*field.spectrum(), |areas| {
-            let rate = areas.rate_at(transform.translation().as_dvec3());
+            let rate = areas.rate_at(from.as_dvec3());
             field.spectrum_at(if rate > 0.0 {
                 libm::exp(libm::round(50.0 * libm::log(rate)) / 50.0)
             } else {
@@ -239,10 +238,23 @@ fn aim_splashes(
         let mut mouths = Vec::new();
         if settings.enabled && settings.budget != Some(0) {
             for spout in &flowing {
-                pouring.add(transform.translation(), *spout, &mut mouths);
+                pouring.add(from, *spout, &mut mouths);
             }
         }
         let alone = steps.is_empty() && mouths.is_empty();
+        let clip_from_view = projection.get_clip_from_view();
+        let aim = if matches!(projection, Projection::Orthographic(_)) {
+            SplashAim::parallel(from, clip_from_view, size.y, transform, &settings)
+        } else {
+            let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
+            SplashAim::perspective(
+                from,
+                volume.side_planes,
+                volume.focal_px as f32,
+                clip_from_view,
+                &settings,
+            )
+        };
         let mapped = cover.as_ref().is_some_and(|cover| cover.placement.is_some());
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
@@ -255,8 +267,10 @@ fn aim_splashes(
             Some(SkipReason::Disabled)
         } else if spectrum.intensity_mm_h <= 0.0 && alone {
             Some(SkipReason::NoRain)
-        } else if !matches!(projection, Projection::Perspective(_)) {
+        } else if !matches!(projection, Projection::Perspective(_) | Projection::Orthographic(_)) {
             Some(SkipReason::Unsupported)
+        } else if alone && aim.shares[0] <= 0.0 {
+            Some(SkipReason::Negligible)
         } else if air.closed_in == Some(entity) {
             Some(SkipReason::Indoors)
         } else if alone && !mapped {
@@ -268,20 +282,21 @@ fn aim_splashes(
             report.skipped(PassName::Splash, reason);
             continue;
         }
-        let clip_from_view = projection.get_clip_from_view();
-        let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
         let budget = share.of(settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 }));
         // Where there are steps and spouts alone, no ground is looked through for impacts.
         let impacts = mapped && spectrum.intensity_mm_h > 0.0;
-        let reach_m = if impacts { settings.distance_m } else { 0.0 };
-        let near_m = settings.drops_distance_m.min(reach_m);
+        let aim = SplashAim {
+            reach_m: if impacts { aim.reach_m } else { [0.0; 2] },
+            ..aim
+        };
+        let [reach_m, near_m] = aim.reach_m;
         let source = Source {
             seed: seed.0,
             spectrum,
             extent: SplashExtent {
                 reach_m: reach_m.into(),
                 near_m: near_m.into(),
-                angle_rad: 2.0 * libm::atan(1.0 / f64::from(clip_from_view.x_axis.x).abs().max(1e-3)),
+                angle_rad: aim.angle_rad,
                 exposure_s: view.exposure_s.into(),
                 film_mm,
             },
@@ -293,15 +308,12 @@ fn aim_splashes(
         }
         frame.shot = Some(SplashShot {
             field: tables,
-            anchor: SplashAnchor::new(volume.eye_m, now),
-            side_planes: volume.side_planes,
+            anchor: SplashAnchor::new(from.as_dvec3(), now),
+            aim,
             wind_m_s: field.wind_m_s().as_vec3(),
-            focal_px: volume.focal_px as f32,
             exposure_s: view.exposure_s,
             contrast: view.contrast,
             soft_m: view.soft_m,
-            reach_m,
-            near_reach_m: near_m,
             // The budget is a mean.
             capacity: 2 * budget + 1024 + MOUTH_PARTS * mouths.len() as u32,
             steps: steps.clone(),

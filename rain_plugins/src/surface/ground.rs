@@ -10,7 +10,7 @@ use rain_ecs::prelude::*;
 
 use super::state::SurfaceState;
 use super::water::{LEVEL_TEXELS, NO_WATER_M, WaterLevels};
-use crate::rainfall::{RainView, leading_view};
+use crate::rainfall::{RainView, ViewPlace, leading_view};
 
 /// Where the levels come from.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -122,9 +122,9 @@ pub(super) fn follow_ground(
     mut surface: ResMut<SurfaceState>,
     mut all: Local<Vec<f32>>,
     ground: Option<Res<SurfaceGround>>,
-    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, ViewPlace), With<RainView>>,
 ) {
-    let eye = leading_view(views).map(GlobalTransform::translation);
+    let eye = leading_view(views).map(|view| view.place());
     let built = ground.as_ref().and_then(|g| Some((g.ground()?, g.rebuilds())));
     let Some((ground, builds)) = built else {
         if shown.shown.take().is_some() {

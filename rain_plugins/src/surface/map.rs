@@ -13,7 +13,7 @@ use rain_render::water_map::{
 use super::ground::LevelsFromGround;
 use super::state::SurfaceState;
 use super::water::WaterLevels;
-use crate::rainfall::{RainView, leading_view};
+use crate::rainfall::{RainView, ViewPlace, ViewPlaceItem, leading_view};
 use crate::report::{PassName, RainReport, SkipReason};
 
 /// Unseen for longer than this while it rained: what happened meanwhile is the ground's to tell. Units: ns.
@@ -118,7 +118,7 @@ pub(super) fn follow_map(
     weather: Query<&WeatherState>,
     areas: Option<Res<RainAreas>>,
     mut presses: Option<ResMut<FilmPresses>>,
-    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, ViewPlace), With<RainView>>,
     mut eyes: Local<Vec<[f64; 2]>>,
 ) {
     let this = map.bypass_change_detection();
@@ -136,7 +136,7 @@ pub(super) fn follow_map(
         let _ = this.map.press(&press);
     }
     let skip = |reason| report.skipped(PassName::WaterMap, reason);
-    let place = |at: &GlobalTransform| [at.translation().x, at.translation().z].map(f64::from);
+    let place = |view: ViewPlaceItem| [view.place().x, view.place().z].map(f64::from);
     let Some(leading) = leading_view(views).map(place) else {
         skip(SkipReason::NoView);
         return;
@@ -202,7 +202,7 @@ pub(super) fn follow_map(
     this.ground = Some(ground_now);
     eyes.clear();
     let active = views.iter().filter(|(_, camera, _)| camera.is_active);
-    eyes.extend(active.map(|(_, _, at)| place(at)));
+    eyes.extend(active.map(|(_, _, view)| place(view)));
     this.map.follow(leading, &eyes);
     let evaporation_mm = state.evaporation_mm_h().max(0.0) * time_s / 3600.0;
     // The weather has been validated before it became state.

@@ -7,7 +7,7 @@ use rain_ecs::prelude::*;
 use super::materials::SurfaceWetting;
 use super::paint::{NoisePuddles, PuddlePaint};
 use super::water::WaterLevels;
-use crate::rainfall::{RainView, leading_view};
+use crate::rainfall::{RainView, ViewPlace, leading_view};
 use crate::render_adapter::WetSurfaceHandles;
 
 /// After this time wind waves repeat. Units: s.
@@ -75,7 +75,7 @@ pub(super) fn follow_weather(
     clock: Res<RainClock>,
     active: Res<ActiveWeather>,
     weather: Query<&WeatherState>,
-    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, ViewPlace), With<RainView>>,
     painted: Query<&PuddlePaint>,
     noises: Query<&NoisePuddles>,
     refined: Query<&SurfaceWetting>,
@@ -87,7 +87,7 @@ pub(super) fn follow_weather(
 ) {
     let fixed = refined.iter().any(|wetting| wetting.state.is_some());
     surface.shown = !painted.is_empty() || fixed || refined.iter().any(SurfaceWetting::is_by_hand);
-    let eye = leading_view(views).map(GlobalTransform::translation);
+    let eye = leading_view(views).map(|view| view.place());
     surface.anchor = eye.unwrap_or(surface.anchor);
     let state = active.entity().and_then(|entity| weather.get(entity).ok());
     let puddles = refined.iter().any(|w| {

@@ -7,7 +7,7 @@ use rain_render::waves::{Disturbance, MAX_DISTURBANCES, WaveTile};
 use super::disturb::{DisturberMotion, WaterContact, WaterDisturber, foot_fall};
 use super::rings::{FORGOTTEN_NS, seen_ns};
 use super::{Handover, WaveWaterSettings};
-use crate::rainfall::{RainView, leading_view};
+use crate::rainfall::{RainView, ViewPlace, leading_view};
 use crate::report::{PassName, RainReport, SkipReason};
 use crate::surface::WaterLevels;
 
@@ -93,7 +93,7 @@ pub(super) fn move_water(
     levels: Res<WaterLevels>,
     settings: Res<WaveWaterSettings>,
     report: Res<RainReport>,
-    views: Query<(Entity, &Camera, &GlobalTransform), With<RainView>>,
+    views: Query<(Entity, &Camera, ViewPlace), With<RainView>>,
     mut disturbers: Query<(
         &WaterDisturber,
         &GlobalTransform,
@@ -149,11 +149,11 @@ pub(super) fn move_water(
         return;
     }
     let Some(view) = view else { return };
-    let eye = view.translation();
+    let eye = view.place();
     if waves.eye.replace(eye).is_none_or(|before| before.distance(eye) > CUT_M) {
         waves.tile.reset();
     }
-    let ahead = eye + view.forward().with_y(0.0).normalize_or_zero() * AHEAD_M;
+    let ahead = view.ahead(AHEAD_M);
     let depth = |x: f64, z: f64| levels.depth_at(x, z);
     let place = [f64::from(ahead.x), f64::from(ahead.z)];
     waves.tile.follow(place, depth);

@@ -19,6 +19,17 @@ const LEAST_OPACITY: f32 = 0.002;
 // The same for thrown drops, of which there are many.
 const LEAST_DROP_OPACITY: f32 = 0.01;
 
+// Along which a place is seen, unit.
+fn seen(p: vec3<f32>) -> vec3<f32> {
+    let from_eye = p + view.rays.xyz;
+    return from_eye / max(length(from_eye), 1e-3);
+}
+
+// How far a place is before the eye, m; without perspective all are as far that nothing is special about them.
+fn before_eye(p: vec3<f32>) -> f32 {
+    return select(length(p), 1.0, view.rays.w > 0.0);
+}
+
 fn shine(p: vec3<f32>) -> vec3<f32> {
     var light = rain_drop_shine(
         environment,
@@ -27,10 +38,10 @@ fn shine(p: vec3<f32>) -> vec3<f32> {
         view.ambient,
         view.sun_direction.xyz,
         view.sun.rgb,
-        normalize(p),
+        seen(p),
     );
     for (var i = 0u; i < view.lamps; i++) {
-        light += rain_lamp_radiance(view.lamp[i], p);
+        light += rain_lamp_radiance_along(view.lamp[i], p, seen(p));
     }
     return light;
 }
@@ -116,12 +127,17 @@ fn crown(found: Found, reach: f32) -> SplashPart {
     opacity = min(opacity, 1.0);
     let radius = grown * rain_crown_radius(found.diameter, speed, found.film, time);
     let height = grown * rain_crown_height(found.diameter, found.excess, time);
-    return standing_sheet(found.place, found.normal, radius, height, opacity, reach_fade(length(found.place), reach), rain_unit(found.key.x));
+    return standing_sheet(found.place, found.normal, radius, height, opacity, view.shares.x * reach_fade(found.place, reach), rain_unit(found.key.x));
 }
 
-// Fades what is right before the eye, and towards the end of the reach.
-fn reach_fade(distance: f32, reach: f32) -> f32 {
-    return rain_ramp(0.1, 0.25, distance) * (1.0 - rain_ramp(0.7 * reach, reach, distance));
+// Fades what is right before the eye.
+fn near_fade(p: vec3<f32>) -> f32 {
+    return rain_ramp(0.1, 0.25, before_eye(p));
+}
+
+// The same, and towards the end of the reach.
+fn reach_fade(p: vec3<f32>, reach: f32) -> f32 {
+    return near_fade(p) * (1.0 - rain_ramp(0.7 * reach, reach, length(p)));
 }
 
 // A sheet of water that stands in a ring, radius and height in m, or nothing (shape.w = 0).
@@ -135,10 +151,10 @@ fn standing_sheet(
     jets: f32,
 ) -> SplashPart {
     var part: SplashPart;
-    let from_eye = place / max(length(place), 1e-3);
+    let from_eye = seen(place);
     let clip = view.clip_from_eye * vec4<f32>(place, 1.0);
     // Drawn before what it stands on: its foot reaches into the ground's pixels.
-    let front = view.clip_from_eye * vec4<f32>(place - from_eye * min(2.0 * radius, 0.5 * length(place)), 1.0);
+    let front = view.clip_from_eye * vec4<f32>(place - from_eye * min(2.0 * radius, 0.5 * before_eye(place)), 1.0);
     let above = view.clip_from_eye * vec4<f32>(place + 0.01 * normal, 1.0);
     if (clip.w < max(view.near, 0.05) || front.w < view.near || above.w < view.near || fade <= 0.0) {
         return part;
@@ -171,7 +187,7 @@ fn standing_sheet(
 fn thrown(found: Found, count: u32, index: u32, reach: f32) -> SplashPart {
     var part: SplashPart;
     // At rest, seen from where the splash is, it would cover this much.
-    let most = found.diameter * 1e-3 * rain_thrown_share(found.key, index) * view.focal / max(length(found.place) - 0.5, 0.05);
+    let most = found.diameter * 1e-3 * rain_thrown_share(found.key, index) * view.focal / max(before_eye(found.place) - select(0.5, 0.0, view.rays.w > 0.0), 0.05);
     if (view.contrast * found.weight * most * most < LEAST_DROP_OPACITY) {
         return part;
     }
@@ -183,7 +199,7 @@ fn thrown(found: Found, count: u32, index: u32, reach: f32) -> SplashPart {
         return part;
     }
     let p = found.place + now;
-    let fade = reach_fade(length(p), reach) * (1.0 - rain_ramp(0.7 * found.life, found.life, found.age));
+    let fade = view.shares.y * reach_fade(p, reach) * (1.0 - rain_ramp(0.7 * found.life, found.life, found.age));
     // Young drops have flown for a part of the exposure.
     let weight = found.weight * min(found.age / view.exposure, 1.0);
     return flying(p, found.place + before, drop.w, weight, fade);
@@ -346,7 +362,7 @@ fn part_of_step(id: u32, index: u32) -> u32 {
     let place = foot.place.xyz;
     let age = foot.place.w;
     let strength = bitcast<f32>(foot.key.w);
-    let fade = reach_fade(length(place), FOOT_REACH);
+    let fade = reach_fade(place, FOOT_REACH);
     if (fade <= 0.0 || beside(place, place, 1.0)) {
         return 0u;
     }
@@ -465,7 +481,7 @@ fn parts_of_mouth(id: u32, index: u32) -> u32 {
     var parts_found = 0u;
     if (!jets) {
         // What hangs there and grows.
-        let drop = flying(place, place, diameter * pow(gathered, 1.0 / 3.0), 1.0, far * rain_ramp(0.1, 0.25, length(place)));
+        let drop = flying(place, place, diameter * pow(gathered, 1.0 / 3.0), 1.0, far * near_fade(place));
         if (drop.shape.w > 0.0) {
             note(drop, id, 0u);
             parts_found++;
@@ -490,7 +506,7 @@ fn parts_of_mouth(id: u32, index: u32) -> u32 {
             let thin = jet_width(mouth, age);
             let swell = 1.0 + 0.7 * clamp(age / breaks, 0.0, 1.0) * (rain_unit(marks.z) - 0.5);
             let upper = place + mouth_way(mouth, youngest);
-            part = jet_piece(upper, place + mouth_way(mouth, until), thin * swell, far * rain_ramp(0.1, 0.25, length(upper)));
+            part = jet_piece(upper, place + mouth_way(mouth, until), thin * swell, far * near_fade(upper));
         } else {
             if (jets) {
                 age = oldest - 0.5 * period;
@@ -504,7 +520,7 @@ fn parts_of_mouth(id: u32, index: u32) -> u32 {
             let earlier = max(age - view.exposure, 0.0);
             let now = place + mouth_way(mouth, age) + age * astray;
             let before = place + mouth_way(mouth, earlier) + earlier * astray;
-            part = streak_of(now, before, diameter, mouth.form.w, far * rain_ramp(0.1, 0.25, length(now)));
+            part = streak_of(now, before, diameter, mouth.form.w, far * near_fade(now));
         }
         if (part.shape.w > 0.0) {
             part.light = vec4<f32>(glint * mix(above, below, clamp(age / end.age, 0.0, 1.0)), part.light.w);

@@ -14,6 +14,7 @@ mod prepare;
 mod project;
 
 pub use encode::{encode_behind, encode_coverage, encode_draw, encode_project};
+pub(crate) use params::SEEN_FROM_M;
 pub use params::{Drops, Lighting, RainfallInput, Shutter};
 pub(crate) use prepare::NO_DROP;
 pub use prepare::{COVERAGE_FORMAT, DEPTH_FORMAT, RainfallGpu, RainfallTextures, RainfallViewGpu, StreakDraws};

@@ -27,7 +27,7 @@ pub struct Lighting {
 }
 
 /// Light is seen from so far back where rays are parallel: their directions differ by less than a thousandth. Units: m.
-const SEEN_FROM_M: f32 = 1e4;
+pub(crate) const SEEN_FROM_M: f32 = 1e4;
 
 /// The shutter and how streaks are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@ use rain_core::splash::{FOOT_DROPS, SPLASH_CELL_M, SPLASH_SLOTS, SplashAnchor, S
 use crate::glass::{self, Pane};
 use crate::gpu_types::{CoverParams, LevelMapParams, SplashFoot, SplashView, SpoutMouth};
 use crate::lamps;
-use crate::rainfall::Lighting;
+use crate::rainfall::{Lighting, SEEN_FROM_M};
 
 /// Furthest reach of splashes. Units: m.
 pub(super) const LARGEST_REACH_M: f32 = 50.0;
@@ -109,13 +109,16 @@ pub struct SplashInput<'a> {
     pub clip_from_eye_before: Mat4,
     /// Four side planes through the eye, unit normals inward; w: offset. Units: m.
     pub side_planes: [Vec4; 4],
+    /// Along the rays of a view without perspective, unit. "Eye" then is a place in the middle of the picture, and all of it is as
+    /// near.
+    pub parallel: Option<Vec3>,
     /// Where the air goes. Units: m/s.
     pub wind_m_s: Vec3,
     /// Size of the target. Units: px.
     pub viewport_px: Vec2,
-    /// Focal length. Units: px.
+    /// Focal length; without perspective the scale. Units: px, px/m.
     pub focal_px: f32,
-    /// Near plane of the projection. Units: m.
+    /// Near plane of the projection; 0 without perspective. Units: m.
     pub near_m: f32,
     /// Shutter time. Units: s. Domain: (0, 1].
     pub exposure_s: f32,
@@ -127,6 +130,8 @@ pub struct SplashInput<'a> {
     pub reach_m: f32,
     /// How far thrown drops are drawn. Units: m. Held in [0, reach].
     pub near_reach_m: f32,
+    /// What is drawn of crowns and of thrown drops at any distance. Units: none. Held in [0, 1].
+    pub shares: [f32; 2],
     /// Film on what stands under no water. Units: mm.
     pub film_mm: f32,
     /// Crowns and drops for which there is room; more are left out, any of them.
@@ -200,6 +205,10 @@ impl SplashInput<'_> {
             sun_direction: self.lighting.sun_direction.extend(0.0).to_array(),
             sun: self.lighting.sun.extend(0.0).to_array(),
             planes: self.side_planes.map(|plane| plane.to_array()),
+            rays: self
+                .parallel
+                .map_or(Vec4::ZERO, |ahead| (ahead * SEEN_FROM_M).extend(1.0))
+                .to_array(),
             wind: self.wind_m_s.extend(0.0).to_array(),
             stream: [a, b, c, self.anchor.slot],
             viewport: self.viewport_px.to_array(),
@@ -221,8 +230,7 @@ impl SplashInput<'_> {
             feet: self.feet.len().min(MAX_FEET) as u32,
             mouths: self.mouths(),
             mouth_reach: held(self.mouth_reach_m, 0.0, 1e4),
-            pad_a: 0.0,
-            pad_b: 0.0,
+            shares: self.shares.map(|share| held(share, 0.0, 1.0)),
             cover: self.cover,
             levels: self.levels,
             counts: self.field.count_limits,

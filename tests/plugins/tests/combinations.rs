@@ -33,7 +33,7 @@ struct Settings {
     part: bool,
     /// The screen is on another layer, which the camera sees too.
     layers: bool,
-    /// Of the rain such a view shows single drops.
+    /// Of the rain such a view shows single drops and splashes.
     orthographic: bool,
 }
 
@@ -161,7 +161,7 @@ fn check_all(deferred: bool) -> usize {
         test.reset();
         let with = test.picture();
         for pass in [PassName::Rainfall, PassName::Lattice, PassName::Splash, PassName::Haze] {
-            let drawn = pass == PassName::Rainfall || !settings.orthographic;
+            let drawn = [PassName::Rainfall, PassName::Splash].contains(&pass) || !settings.orthographic;
             assert_eq!(test.recorded(pass) > 0, drawn, "{settings:?}: {}", pass.as_str());
         }
         let whole = [0, 0, SIZE[0], SIZE[1]];

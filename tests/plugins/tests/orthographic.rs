@@ -15,6 +15,10 @@ use crate::haze::{SIZE, read};
 /// A view down onto level ground from the side, as in a game of buildings, in rain that falls straight down; the picture is
 /// `height_m` high.
 fn scene(height_m: f32) -> (TestApp, Handle<Image>) {
+    scene_in(height_m, 40.0)
+}
+
+fn scene_in(height_m: f32, rain_mm_h: f64) -> (TestApp, Handle<Image>) {
     let mut test = TestApp::new(SIZE, true);
     world::without_ground(test.world());
     world::block(
@@ -24,7 +28,7 @@ fn scene(height_m: f32) -> (TestApp, Handle<Image>) {
         Vec3::new(80.0, 0.0, 80.0),
         [0.02; 3],
     );
-    test.world().spawn(Weather::rain(40.0));
+    test.world().spawn(Weather::rain(rain_mm_h));
     let masks = [MaskKind::Rain, MaskKind::Surface, MaskKind::Surface, MaskKind::Surface].map(|kind| {
         let image = mask_image(kind, SIZE[0], SIZE[1]);
         test.world().resource_mut::<Assets<Image>>().add(image)
@@ -135,7 +139,7 @@ fn rain_lies_where_the_view_is_focused_and_behind_what_hides_it_there_is_none() 
     // A wall right before the camera, and all of the rain behind it.
     focus(&mut test, 30.0);
     let open = rain(&mut test);
-    let back = Vec3::new(20.0, 20.0, 30.0) * 0.9;
+    let back = Vec3::new(20.0, 20.0, 30.0) * 0.62;
     let wall = world::block(
         test.world(),
         "wall",
@@ -151,4 +155,120 @@ fn rain_lies_where_the_view_is_focused_and_behind_what_hides_it_there_is_none() 
     test.world().despawn(wall);
     let again = rain(&mut test);
     assert!(again > 0.8 * open, "{again} of {open}");
+}
+
+/// Asks for the mask of a view's splashes.
+fn with_splash_mask(test: &mut TestApp) -> Handle<Image> {
+    let image = mask_image(MaskKind::Rain, SIZE[0], SIZE[1]);
+    let mask = test.world().resource_mut::<Assets<Image>>().add(image);
+    let camera = test.camera;
+    test.world().entity_mut(camera).insert(SplashMask(mask.clone()));
+    mask
+}
+
+/// The mean of a mask over moments that share no splash.
+fn mean_of(test: &mut TestApp, mask: &Handle<Image>, moments: u32) -> Vec<f64> {
+    let mut sum = vec![0.0; (SIZE[0] * SIZE[1]) as usize];
+    for _ in 0..moments {
+        test.frames(1, Duration::from_millis(700));
+        test.frames(1, Duration::ZERO);
+        for (sum, now) in sum.iter_mut().zip(read(test, mask)) {
+            *sum += now / f64::from(moments);
+        }
+    }
+    sum
+}
+
+#[test]
+fn splashes_stand_all_over_a_near_picture_and_none_in_a_wide_one() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, _) = scene(4.0);
+    let mask = with_splash_mask(&mut test);
+    let means = ninths(&mean_of(&mut test, &mask, 20));
+    let middle = means.iter().sum::<f64>() / 9.0;
+    assert!(middle > 1e-4, "{means:?}");
+    for mean in means {
+        assert!((mean / middle - 1.0).abs() < 0.4, "{means:?}");
+    }
+    assert_eq!(test.skipped(PassName::Splash, SkipReason::Unsupported), 0);
+    test.reset();
+    // As from further away than splashes are seen.
+    let camera = test.camera;
+    let mut projection = test.world().get_mut::<Projection>(camera).expect("a projection");
+    if let Projection::Orthographic(flat) = &mut *projection {
+        flat.scaling_mode = ScalingMode::FixedVertical { viewport_height: 20.0 };
+    }
+    test.frames(3, FRAME);
+    assert!(test.skipped(PassName::Splash, SkipReason::Negligible) > 0);
+    assert_eq!(test.recorded(PassName::Splash), 0);
+    assert!(read(&mut test, &mask).iter().all(|covered| *covered == 0.0));
+}
+
+#[test]
+fn a_roof_in_the_picture_keeps_off_splashes_however_far_away_the_camera_is() {
+    if !gpu::available() {
+        return;
+    }
+    for away in [30.0, 300.0] {
+        let (mut test, _) = scene(4.0);
+        world::roof(test.world());
+        let (sin, cos) = 10.0_f32.to_radians().sin_cos();
+        test.look(away * Vec3::new(0.0, sin, cos), Vec3::ZERO);
+        test.frames(3, FRAME);
+        let mask = with_splash_mask(&mut test);
+        let found = mean_of(&mut test, &mask, 8);
+        // Mean over a rectangle of the picture, metres right and up from its middle.
+        let px = f64::from(SIZE[1]) / 4.0;
+        let mean = |x: [f64; 2], y: [f64; 2]| {
+            let [columns, rows] = [x, y].map(|[a, b]| (b - a) * px);
+            let left = f64::from(SIZE[0]) / 2.0 + x[0] * px;
+            let top = f64::from(SIZE[1]) / 2.0 - y[1] * px;
+            let row = |j: usize| (top as usize + j) * SIZE[0] as usize + left as usize;
+            let sum: f64 = (0..rows as usize)
+                .map(|j| found[row(j)..row(j) + columns as usize].iter().sum::<f64>())
+                .sum();
+            sum / (rows.floor() * columns.floor())
+        };
+        let half = f64::from(world::ROOF_HALF);
+        // Ground a metre further away is a sixth of a metre higher.
+        let under = mean([-3.0, 3.0], [-0.12 * half, 0.12 * half]);
+        let before = mean([-3.0, 3.0], [-1.7, -0.25 * half]);
+        assert!(before > 1e-4, "{before} from {away} m");
+        assert!(
+            under < 0.02 * before,
+            "{under} under the roof, {before} before it, from {away} m"
+        );
+    }
+}
+
+#[test]
+fn a_shower_in_the_picture_is_drawn_however_far_away_the_camera_is() {
+    if !gpu::available() {
+        return;
+    }
+    let (mut test, mask) = scene_in(9.0, 0.0);
+    let eye = 10.0 * Vec3::new(20.0, 20.0, 30.0);
+    test.look(eye, Vec3::ZERO);
+    let camera = test.camera;
+    // By default rain is drawn before the ground, and this shower is smaller.
+    test.world().get_mut::<RainView>(camera).expect("a rain view").focus_m = Some(eye.length());
+    test.leap(1);
+    assert_eq!(test.recorded(PassName::Rainfall), 0, "a dry sky");
+    let shower = AreaSettings {
+        shape: AreaShape::Circle { radius_m: 2.5 },
+        rain: AreaRain::Rate(40.0),
+        transition_m: 0.5,
+        ..AreaSettings::default()
+    };
+    test.world().spawn(RainArea(shower));
+    test.leap(2);
+    let found = mean_of(&mut test, &mask, 6);
+    let means = ninths(&found);
+    assert!(means[4] > 8e-4, "{means:?}");
+    // The picture is 16 m wide: the shower is as wide as its middle third.
+    for side in [0, 2, 3, 5, 6, 8] {
+        assert!(means[side] < 0.35 * means[4], "{means:?}");
+    }
 }

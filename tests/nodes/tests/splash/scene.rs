@@ -45,6 +45,8 @@ pub struct Scene {
     pub near_reach_m: f32,
     pub contrast: f32,
     pub seed: u64,
+    /// Height of the picture without perspective; its middle then sees the ground below the eye's place. Units: m. 0: with perspective.
+    pub parallel_m: f32,
 }
 
 /// What a view may have beside the rain.
@@ -72,6 +74,7 @@ impl Default for Scene {
             near_reach_m: 0.0,
             contrast: 32.0,
             seed: 5,
+            parallel_m: 0.0,
         }
     }
 }
@@ -164,6 +167,12 @@ impl Scene {
 
     /// Looking straight down, −z up on the screen. Infinite reverse-Z.
     pub fn clip_from_eye(&self) -> Mat4 {
+        let view = Mat4::from_cols(Vec4::X, Vec4::Z, -Vec4::Y, Vec4::W);
+        if self.parallel_m > 0.0 {
+            let half = 0.5 * self.parallel_m;
+            // Reverse-Z from 20 m above to 20 m below.
+            return Mat4::orthographic_rh(-half, half, -half, half, 20.0, -20.0) * view;
+        }
         let f = 1.0 / 0.6_f32.tan();
         let projection = Mat4::from_cols(
             Vec4::new(f, 0.0, 0.0, 0.0),
@@ -171,12 +180,20 @@ impl Scene {
             Vec4::new(0.0, 0.0, 0.0, -1.0),
             Vec4::new(0.0, 0.0, 0.05, 0.0),
         );
-        let view = Mat4::from_cols(Vec4::X, Vec4::Z, -Vec4::Y, Vec4::W);
         projection * view
     }
 
     pub fn focal_px() -> f32 {
         0.5 * SIZE.y / 0.6_f32.tan()
+    }
+
+    /// Pixels of a metre at a point relative to the eye.
+    pub fn px_per_m(&self, p: Vec3) -> f32 {
+        if self.parallel_m > 0.0 {
+            SIZE.y / self.parallel_m
+        } else {
+            Self::focal_px() / -p.y
+        }
     }
 
     /// Pixel of a point relative to the eye.
@@ -222,22 +239,32 @@ impl Scene {
             anchor: self.anchor(),
             clip_from_eye: self.clip_from_eye(),
             clip_from_eye_before: self.clip_from_eye(),
-            side_planes: [
-                Vec3::new(cos, -sin, 0.0),
-                Vec3::new(-cos, -sin, 0.0),
-                Vec3::new(0.0, -sin, cos),
-                Vec3::new(0.0, -sin, -cos),
-            ]
-            .map(|n| n.extend(0.0)),
+            side_planes: if self.parallel_m > 0.0 {
+                [Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Z].map(|n| n.extend(0.5 * self.parallel_m))
+            } else {
+                [
+                    Vec3::new(cos, -sin, 0.0),
+                    Vec3::new(-cos, -sin, 0.0),
+                    Vec3::new(0.0, -sin, cos),
+                    Vec3::new(0.0, -sin, -cos),
+                ]
+                .map(|n| n.extend(0.0))
+            },
+            parallel: (self.parallel_m > 0.0).then_some(Vec3::NEG_Y),
             wind_m_s: Vec3::new(self.wind_m_s.x as f32, 0.0, self.wind_m_s.y as f32),
             viewport_px: SIZE,
-            focal_px: Self::focal_px(),
-            near_m: 0.05,
+            focal_px: if self.parallel_m > 0.0 {
+                SIZE.y / self.parallel_m
+            } else {
+                Self::focal_px()
+            },
+            near_m: if self.parallel_m > 0.0 { 0.0 } else { 0.05 },
             exposure_s: self.exposure_s,
             contrast: self.contrast,
             soft_m: 0.0,
             reach_m: self.reach_m,
             near_reach_m: self.near_reach_m,
+            shares: [1.0; 2],
             film_mm: self.film_mm,
             capacity,
             lighting: Lighting {

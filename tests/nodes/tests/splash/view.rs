@@ -30,7 +30,7 @@ fn known_crowns(scene: &Scene) -> Vec<(Vec2, f32, f64, DVec2)> {
         let time = 0.5 * ((age - exposure).max(0.0) + age.min(life));
         let speed = -l.impact.velocity_m_s.dot(l.impact.normal);
         let radius = (0.8 + 0.4 * l.vary[1]) * crown_radius_m_f32(d, speed, l.impact.film_mm, time);
-        let half = (radius * Scene::focal_px() / -l.p.y).max(0.5);
+        let half = (radius * scene.px_per_m(l.p)).max(0.5);
         (age - exposure < life).then(|| (scene.pixel(l.p), half, seen, l.place))
     };
     let crowns = scene.living().iter().filter_map(crown).collect::<Vec<_>>();
@@ -111,6 +111,28 @@ fn another_eye_far_away_after_days_sees_the_same_splashes() {
         ..Scene::default()
     };
     assert!(compare(&gpu, &pipelines, &scene) > 500);
+}
+
+#[test]
+fn without_perspective_crowns_stand_where_the_cpu_has_them_too() {
+    let Some(gpu) = device() else { return };
+    let pipelines = SplashGpu::new(&gpu.device);
+    let scene = Scene {
+        eye_m: DVec3::new(-1.0, 0.0, 0.3),
+        parallel_m: 6.0,
+        ..Scene::default()
+    };
+    assert!(compare(&gpu, &pipelines, &scene) > 300);
+    // Those in the middle of the picture, around which all are looked for, are as plain as those at its rim.
+    let (parts, _) = scene.parts(&gpu, &pipelines, 1 << 18);
+    let number = |low: f32, high: f32| {
+        let feet = crowns(&parts).into_iter();
+        feet.filter(|(p, _)| (low..high).contains(&(p.distance(0.5 * SIZE) / (0.5 * SIZE.y))))
+            .count() as f32
+            / (high * high - low * low)
+    };
+    let (inner, outer) = (number(0.0, 0.5), number(0.5, 1.0));
+    assert!((inner / outer - 1.0).abs() < 0.25, "{inner} and {outer} an area");
 }
 
 #[test]
