@@ -88,7 +88,7 @@ struct SplashView {
     limits: array<vec4<u32>, 3>,
     // Start, span and bend of the diameters of a class; w: weight.
     classes: array<vec4<f32>, 12>,
-    lamp: array<LampParams, 16>,
+    lamp: array<LampParams, 64>,
     pane: array<GlassPane, 8>,
     foot: array<SplashFoot, 8>,
 }

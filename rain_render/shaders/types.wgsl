@@ -100,7 +100,7 @@ struct RainfallView {
     pad_c: u32,
     cover: CoverParams,
     classes: array<RainfallClass, 12>,
-    lamp: array<LampParams, 16>,
+    lamp: array<LampParams, 64>,
     pane: array<GlassPane, 8>,
 }
 
@@ -512,7 +512,7 @@ struct LatticeParams {
     pad_b: u32,
     pad_c: u32,
     cover: CoverParams,
-    lamp: array<LampParams, 16>,
+    lamp: array<LampParams, 64>,
     pane: array<GlassPane, 8>,
 }
 

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use glam::Vec3;
 use rain_bench::study::{Study, Variant};
 use rain_core::hash::{pcg3d, unit_f32};
-use rain_core::rainfall::{Lamp, MAX_LAMPS};
+use rain_core::rainfall::Lamp;
 
 /// Every study of this file.
 pub fn studies() -> Vec<Study> {
@@ -147,7 +147,7 @@ fn kept() -> Study {
             variant("2", 2),
             variant("4", 4),
             variant("8", 8),
-            variant("16", MAX_LAMPS).default(),
+            variant("16", 16).default(),
             variant("24", 24),
             variant("32", 32),
             variant("48", 48),

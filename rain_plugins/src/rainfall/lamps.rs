@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use bevy::light::{PointLight, SpotLight};
 use bevy::prelude::*;
-use rain_core::rainfall::{Lamp, MAX_LAMPS};
+use rain_core::rainfall::Lamp;
 
 use super::parallel::ViewPlace;
-use super::view::RainViewFrame;
+use super::view::{RainViewFrame, SoftwareAdapter};
 
 /// Rain that lamps are chosen for: a ball ahead of the eye, or around what a view without perspective looks at. Units: m.
 const AHEAD_M: f32 = 15.0;
@@ -18,7 +18,8 @@ const FADE: f32 = 0.25;
 /// Nothing is smaller: Bevy's lights have no radius by default, and their light is infinite. Units: m.
 const MIN_RADIUS_M: f32 = 0.02;
 
-/// The lamps near a view's rain; follows the scene's [`PointLight`]s and [`SpotLight`]s. At most [`MAX_LAMPS`].
+/// The lamps near a view's rain; follows the scene's [`PointLight`]s and [`SpotLight`]s. At most as many as
+/// [`RainView::lamps`](super::RainView::lamps) says.
 #[derive(Component, Clone, Debug, Default)]
 pub struct ViewLamps(Arc<Vec<Lamp>>);
 
@@ -121,8 +122,14 @@ pub(crate) fn keep_strongest(found: &mut Vec<(f32, Lamp)>, most: usize, out: &mu
     }));
 }
 
-/// The strongest lamps on the rain about a place.
-fn strongest(lamps: impl Iterator<Item = Lamp>, amid: Vec3, found: &mut Vec<(f32, Lamp)>, out: &mut Vec<Lamp>) {
+/// The `most` strongest lamps on the rain about a place.
+fn strongest(
+    lamps: impl Iterator<Item = Lamp>,
+    amid: Vec3,
+    most: usize,
+    found: &mut Vec<(f32, Lamp)>,
+    out: &mut Vec<Lamp>,
+) {
     found.clear();
     found.extend(lamps.filter_map(|lamp| {
         let own = Lamp {
@@ -134,20 +141,22 @@ fn strongest(lamps: impl Iterator<Item = Lamp>, amid: Vec3, found: &mut Vec<(f32
         let share = own.bound(Vec3::ZERO, REACH_M);
         (share > 0.0 && lamp.position_m.is_finite()).then_some((share, lamp))
     }));
-    keep_strongest(found, MAX_LAMPS, out);
+    keep_strongest(found, most, out);
 }
 
 pub(crate) fn choose_lamps(
     lamps: SceneLamps,
+    software: Res<SoftwareAdapter>,
     mut found: Local<Vec<(f32, Lamp)>>,
-    mut views: Query<(&Camera, ViewPlace, &mut ViewLamps), With<RainViewFrame>>,
+    mut views: Query<(&Camera, ViewPlace, &RainViewFrame, &mut ViewLamps)>,
 ) {
-    for (camera, view, mut chosen) in &mut views {
+    for (camera, view, frame, mut chosen) in &mut views {
         if !camera.is_active {
             continue;
         }
         let mut out = Arc::try_unwrap(std::mem::take(&mut chosen.0)).unwrap_or_default();
-        strongest(shining(&lamps), view.inward(AHEAD_M), &mut found, &mut out);
+        let most = frame.settings().most_lamps(*software);
+        strongest(shining(&lamps), view.inward(AHEAD_M), most, &mut found, &mut out);
         chosen.0 = Arc::new(out);
     }
 }
@@ -156,9 +165,17 @@ pub(crate) fn choose_lamps(
 mod tests {
     use super::*;
 
+    const KEPT: usize = 16;
+
     fn chosen(lamps: &[Lamp]) -> Vec<Lamp> {
         let mut out = Vec::new();
-        strongest(lamps.iter().copied(), Vec3::NEG_Z * AHEAD_M, &mut Vec::new(), &mut out);
+        strongest(
+            lamps.iter().copied(),
+            Vec3::NEG_Z * AHEAD_M,
+            KEPT,
+            &mut Vec::new(),
+            &mut out,
+        );
         out
     }
 
@@ -170,7 +187,7 @@ mod tests {
                 .collect()
         };
         let near = chosen(&row(0.0));
-        assert_eq!(near.len(), MAX_LAMPS);
+        assert_eq!(near.len(), KEPT);
         assert!(
             near.iter().all(|lamp| lamp.position_m.z >= -320.0),
             "the nearest are kept"

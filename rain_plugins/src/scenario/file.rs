@@ -483,6 +483,8 @@ pub struct RainSettings {
     pub far_rain: Option<bool>,
     /// Whether near streaks show what their drops do. Default: on a GPU, not on a software adapter.
     pub near_patterns: Option<bool>,
+    /// How many of the scene's lamps light the rain. Domain: [0, 64]. Default: 64 on a GPU, 16 on a software adapter.
+    pub lamps: Option<u32>,
     /// Glass before the camera that the rain wets. Default: `Off`.
     pub lens: Lens,
 }
@@ -529,6 +531,7 @@ impl Default for RainSettings {
             cards: None,
             far_rain: None,
             near_patterns: None,
+            lamps: None,
             lens: Lens::Off,
             look: WetLook::Physical,
         }

@@ -403,6 +403,7 @@ fn values_out_of_domain_name_the_field() {
             "0.1 to 1000 m",
         ),
         ("contrast: 6", "contrast: 0.5", "rain.contrast", "1 to 32"),
+        ("contrast: 6", "lamps: 65", "rain.lamps", "0 to 64"),
         (
             "streak_budget: 100000",
             "streak_budget: 4000001",

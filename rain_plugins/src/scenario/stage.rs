@@ -324,6 +324,7 @@ fn camera(app: &mut App, scenario: &Scenario, waiting: Vec<Waiting>) -> (Stage, 
             cards: scenario.rain.cards,
             far_rain: scenario.rain.far_rain,
             near_patterns: scenario.rain.near_patterns,
+            lamps: scenario.rain.lamps,
             ..default()
         });
         camera.insert(HazeSettings {

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use rain_core::error::ConfigError;
+use rain_core::rainfall::MAX_LAMPS;
 use rain_ecs::prelude::{GustSettings, LevelCurve, LightningSettings};
 use thiserror::Error;
 
@@ -184,6 +185,8 @@ impl Scenario {
         number("rain.bloom", self.rain.bloom, 0.0, 100.0, "")?;
         number("rain.cloud_base_m", self.rain.cloud_base_m, -1e5, 1e5, "m")?;
         number("rain.contrast", self.rain.contrast, 1.0, 32.0, "")?;
+        let lamps = f64::from(self.rain.lamps.unwrap_or_default());
+        number("rain.lamps", lamps, 0.0, MAX_LAMPS as f64, "")?;
         number("rain.exposure_s", self.rain.exposure_s, 1e-4, 0.25, "s")?;
         if let Err(ConfigError::OutOfRange { field, value, allowed }) = self.water.appearance().validated() {
             return problem(format!("water.{field}"), value, allowed);

@@ -24,7 +24,7 @@ struct CardVertex {
     // Distance along the view's axis, m.
     @location(4) axial: f32,
     // A bit for each lamp that may show on it.
-    @location(5) @interpolate(flat) lamps: u32,
+    @location(5) @interpolate(flat) lamps: vec2<u32>,
 }
 
 fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
@@ -35,14 +35,23 @@ fn surroundings(direction: vec3<f32>, blur: f32) -> vec3<f32> {
 }
 
 // A bit for each lamp whose light somewhere in the card's cell may be seen.
-fn lamps_on(card: Card) -> u32 {
-    var found = 0u;
+fn lamps_on(card: Card) -> vec2<u32> {
+    var found = vec2<u32>(0u);
     for (var i = 0u; i < view.lamps; i++) {
         if (rain_lamp_bound(view.lamp[i], card.centre.xyz, 1.7320508 * card.centre.w) > LEAST_LIGHT) {
-            found |= 1u << i;
+            found[i >> 5u] |= 1u << (i & 31u);
         }
     }
     return found;
+}
+
+// Light of the lamps whose bits are set, the first of which is that of lamp `first`.
+fn light_of(bits: u32, first: u32, point: vec3<f32>) -> vec3<f32> {
+    var light = vec3<f32>(0.0);
+    for (var left = bits; left != 0u; left &= left - 1u) {
+        light += rain_lamp_radiance(view.lamp[first + firstTrailingBit(left)], point);
+    }
+    return light;
 }
 
 fn behind_glass(place: vec3<f32>) -> bool {
@@ -148,10 +157,7 @@ fn colour(in: CardVertex) -> @location(0) vec4<f32> {
     if (opacity < 1e-6 || rain_patch_covered(cover_map, view.cover, seen.middle, card.facing.w)) {
         return vec4<f32>(0.0);
     }
-    var light = in.light;
-    for (var left = in.lamps; left != 0u; left &= left - 1u) {
-        light += rain_lamp_radiance(view.lamp[firstTrailingBit(left)], in.point);
-    }
+    let light = in.light + light_of(in.lamps.x, 0u, in.point) + light_of(in.lamps.y, 32u, in.point);
     let shown = rain_contrast(opacity, view.contrast);
     return vec4<f32>(mix(view.fog.rgb, light, card.place.w) * shown, shown);
 }

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use rain_core::rainfall::{
-    CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, DropChoice, FADE_END, FieldMotion, Lamp, ParallelView,
-    RANGE_CAP_M, RainViewVolume, SizeClass, Spectrum, terminal_velocity, visible_range_m,
+    CLASS_COUNT, Container, DetailLaw, Distribution, DrawRange, DropChoice, FADE_END, FieldMotion, Lamp, MAX_LAMPS,
+    ParallelView, RANGE_CAP_M, RainViewVolume, SizeClass, Spectrum, terminal_velocity, visible_range_m,
 };
 use rain_render::cover::open_sky;
 use rain_render::glass::Pane;
@@ -361,7 +361,12 @@ fn streaks_show_lamps_as_the_cpu_has_them() {
         ..Lamp::point(Vec3::new(0.7, -0.6, 1.0), Vec3::splat(900.0), 0.2)
     };
     let view = FieldView {
-        lamps: vec![street_lamp, headlight],
+        // As many as count, most of them out.
+        lamps: [
+            vec![Lamp::point(Vec3::Y, Vec3::ZERO, 0.1); MAX_LAMPS - 2],
+            vec![street_lamp, headlight],
+        ]
+        .concat(),
         ..FieldView::default()
     };
     let container = view.container(3, &spectrum);

@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
 use rain_core::hash::{pcg3d, unit_f32};
 use rain_core::rainfall::{
-    Card, Distribution, FieldMotion, Lamp, LatticePlan, LatticeSettings, LatticeView, RainViewVolume, Spectrum,
-    StreakTextureSettings, StreakTextures, pitch_weight,
+    Card, Distribution, FieldMotion, Lamp, LatticePlan, LatticeSettings, LatticeView, MAX_LAMPS, RainViewVolume,
+    Spectrum, StreakTextureSettings, StreakTextures, pitch_weight,
 };
 use rain_render::cover::{CoverPlacement, open_sky};
 use rain_render::gpu_types::{CoverParams, LampParams};
@@ -432,6 +432,18 @@ fn it_is_dark_where_no_light_falls_and_bright_about_a_lamp() {
     // Twice the lamps, twice the light.
     let twice = night(&[lamp, lamp]);
     assert!((mean(&twice) / mean(&lit) - 2.0).abs() < 0.02);
+    // Wherever in the list a lamp stands it is as bright, and beyond the last place it is not there.
+    let dark = Lamp {
+        intensity: Vec3::ZERO,
+        ..lamp
+    };
+    for place in [31, 32, MAX_LAMPS - 1, MAX_LAMPS] {
+        let mut lamps = vec![dark; place];
+        lamps.push(lamp);
+        let found = mean(&night(&lamps));
+        let expected = if place < MAX_LAMPS { mean(&lit) } else { 0.0 };
+        assert!((found - expected).abs() < 1e-6, "{place}: {found}, {expected}");
+    }
 }
 
 #[test]

