@@ -2,6 +2,7 @@
 
 use bevy::math::Vec4;
 use bevy::prelude::*;
+use rain_core::haze::ramp;
 
 use super::view::{MAX_SPLASH_DISTANCE_M, SplashSettings};
 use crate::rainfall::Picture;
@@ -63,10 +64,10 @@ impl SplashAim {
         let (_, rotation, position) = transform.to_scale_rotation_translation();
         let Picture { half, .. } = Picture::new(clip_from_view, position, rotation);
         let [right, up, ahead] = [Vec3::X, Vec3::Y, Vec3::NEG_Z].map(|axis| rotation * axis);
-        let away = 2.0 * half.y / LENS_HEIGHT;
+        let away = f64::from(2.0 * half.y / LENS_HEIGHT);
         let share = |distance: f32| {
-            let t = ((away / distance - CLEAR) / (1.0 - CLEAR)).clamp(0.0, 1.0);
-            if t < 1.0 { 1.0 - t * t * (3.0 - 2.0 * t) } else { 0.0 }
+            let end = f64::from(distance);
+            (1.0 - ramp(away, f64::from(CLEAR) * end, end)) as f32
         };
         let shares = [
             share(settings.distance_m),

@@ -242,19 +242,6 @@ fn aim_splashes(
             }
         }
         let alone = steps.is_empty() && mouths.is_empty();
-        let clip_from_view = projection.get_clip_from_view();
-        let aim = if matches!(projection, Projection::Orthographic(_)) {
-            SplashAim::parallel(from, clip_from_view, size.y, transform, &settings)
-        } else {
-            let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
-            SplashAim::perspective(
-                from,
-                volume.side_planes,
-                volume.focal_px as f32,
-                clip_from_view,
-                &settings,
-            )
-        };
         let mapped = cover.as_ref().is_some_and(|cover| cover.placement.is_some());
         let skip = if !camera.is_active || size.x == 0 || size.y == 0 {
             Some(SkipReason::NoView)
@@ -269,8 +256,6 @@ fn aim_splashes(
             Some(SkipReason::NoRain)
         } else if !matches!(projection, Projection::Perspective(_) | Projection::Orthographic(_)) {
             Some(SkipReason::Unsupported)
-        } else if alone && aim.shares[0] <= 0.0 {
-            Some(SkipReason::Negligible)
         } else if air.closed_in == Some(entity) {
             Some(SkipReason::Indoors)
         } else if alone && !mapped {
@@ -280,6 +265,23 @@ fn aim_splashes(
         };
         if let Some(reason) = skip {
             report.skipped(PassName::Splash, reason);
+            continue;
+        }
+        let clip_from_view = projection.get_clip_from_view();
+        let aim = if matches!(projection, Projection::Orthographic(_)) {
+            SplashAim::parallel(from, clip_from_view, size.y, transform, &settings)
+        } else {
+            let volume = view_volume(clip_from_view, size, transform, motion, view.exposure_s);
+            SplashAim::perspective(
+                from,
+                volume.side_planes,
+                volume.focal_px as f32,
+                clip_from_view,
+                &settings,
+            )
+        };
+        if alone && aim.shares[0] <= 0.0 {
+            report.skipped(PassName::Splash, SkipReason::Negligible);
             continue;
         }
         let budget = share.of(settings.budget.unwrap_or(if software.0 { 4_000 } else { 40_000 }));
