@@ -9,11 +9,21 @@ pub(crate) fn params_entry(
     visibility: wgpu::ShaderStages,
     size: usize,
 ) -> wgpu::BindGroupLayoutEntry {
+    params_entry_in(ParamsSpace::of(device), binding, visibility, size)
+}
+
+/// The same in a space.
+pub(crate) fn params_entry_in(
+    space: ParamsSpace,
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    size: usize,
+) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
         ty: wgpu::BindingType::Buffer {
-            ty: ParamsSpace::of(device).binding(),
+            ty: space.binding(),
             has_dynamic_offset: false,
             min_binding_size: wgpu::BufferSize::new(size as u64),
         },

@@ -238,9 +238,18 @@ pub(crate) fn shader(device: &wgpu::Device, pass: &str) -> wgpu::ShaderModule {
 
 /// A module whose parameters lie where the device has them.
 pub(crate) fn create(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
+    create_in(ParamsSpace::of(device), device, label, source)
+}
+
+/// The module of a pass whose parameters lie in a space.
+pub(crate) fn shader_in(space: ParamsSpace, device: &wgpu::Device, pass: &str) -> wgpu::ShaderModule {
+    create_in(space, device, pass, &module(pass))
+}
+
+fn create_in(space: ParamsSpace, device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(ParamsSpace::of(device).source(source)),
+        source: wgpu::ShaderSource::Wgsl(space.source(source)),
     })
 }
 

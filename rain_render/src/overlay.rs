@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::compose;
+use crate::params_space::ParamsSpace;
 use crate::rainfall::{COVERAGE_FORMAT, DEPTH_FORMAT};
 
 /// What pipelines differ by.
@@ -80,6 +81,17 @@ impl Overlay {
     /// Of the pass `pass`, with these bindings, tested against the scene's depth.
     pub fn new(device: &wgpu::Device, label: &'static str, pass: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> Self {
         Self::of(device, label, compose::shader(device, pass), entries, true)
+    }
+
+    /// The same with parameters in uniform buffers on every device: for shaders with no branch that tests them alone.
+    pub fn uniform(
+        device: &wgpu::Device,
+        label: &'static str,
+        pass: &str,
+        entries: &[wgpu::BindGroupLayoutEntry],
+    ) -> Self {
+        let shader = compose::shader_in(ParamsSpace::Uniform, device, pass);
+        Self::of(device, label, shader, entries, true)
     }
 
     /// The same for a shader with pipeline constants.

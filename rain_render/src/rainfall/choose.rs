@@ -15,10 +15,10 @@ use rain_core::rainfall::{
     UnevenRain, ViewCells,
 };
 
-use crate::bindings::{compute_pipeline_with, params_entry, storage_entry};
+use crate::bindings::{compute_pipeline_with, params_entry_in, storage_entry};
 use crate::compose;
 use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
-use crate::params_space::PARAMS;
+use crate::params_space::{PARAMS, ParamsSpace};
 use crate::quad_indices::quads_of_a_draw;
 use crate::rainfall::prepare::AGAIN_WORD;
 
@@ -75,24 +75,21 @@ const FINDING: [(u32, bool); 8] = [
     (11, true),
 ];
 
-/// The layouts and the pipelines.
+/// The module and its layouts, with parameters in one space.
 #[derive(Debug)]
-pub(super) struct Choose {
+struct Passes {
     summing: wgpu::BindGroupLayout,
     finding: wgpu::BindGroupLayout,
     module: wgpu::ShaderModule,
-    /// Views have pipelines of their own.
-    apart: bool,
-    pipelines: [OnceLock<Pipelines>; 8],
 }
 
-impl Choose {
-    pub fn new(device: &wgpu::Device) -> Self {
+impl Passes {
+    fn new(device: &wgpu::Device, space: ParamsSpace) -> Self {
         let compute = wgpu::ShaderStages::COMPUTE;
         let layout = |buffers: &[(u32, bool)]| {
             let mut entries = vec![
-                params_entry(device, 0, compute, size_of::<RainfallView>()),
-                params_entry(device, 1, compute, size_of::<RainfallChoice>()),
+                params_entry_in(space, 0, compute, size_of::<RainfallView>()),
+                params_entry_in(space, 1, compute, size_of::<RainfallChoice>()),
             ];
             entries.extend(
                 buffers
@@ -104,11 +101,33 @@ impl Choose {
                 entries: &entries,
             })
         };
-        let choose = Self {
+        Self {
             summing: layout(&SUMMING),
             finding: layout(&FINDING),
-            module: compose::shader(device, "rainfall_choose"),
-            apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
+            module: compose::shader_in(space, device, "rainfall_choose"),
+        }
+    }
+}
+
+/// The layouts and the pipelines.
+#[derive(Debug)]
+pub(super) struct Choose {
+    /// Of what leaves drops out: only there do branches test parameters alone.
+    thinned: Passes,
+    /// Of what does not, where views have pipelines of their own.
+    whole: Option<Passes>,
+    /// Views have pipelines of their own.
+    apart: bool,
+    pipelines: [OnceLock<Pipelines>; 8],
+}
+
+impl Choose {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let apart = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        let choose = Self {
+            thinned: Passes::new(device, ParamsSpace::of(device)),
+            whole: apart.then(|| Passes::new(device, ParamsSpace::Uniform)),
+            apart,
             pipelines: Default::default(),
         };
         if !choose.apart {
@@ -121,10 +140,19 @@ impl Choose {
         if self.apart { key } else { ChoiceKey::EVERYTHING }
     }
 
+    /// What the pipelines of a view are made of.
+    fn passes(&self, key: ChoiceKey) -> &Passes {
+        match &self.whole {
+            Some(whole) if !key.thinned => whole,
+            _ => &self.thinned,
+        }
+    }
+
     fn prepare(&self, device: &wgpu::Device, key: ChoiceKey) {
         let key = self.serving(key);
         if let Some(slot) = self.pipelines.get(key.index()) {
             slot.get_or_init(|| {
+                let passes = self.passes(key);
                 let constants = [
                     ("UNEVEN", f64::from(key.uneven)),
                     ("THINNED", f64::from(key.thinned)),
@@ -135,20 +163,20 @@ impl Choose {
                     compute_pipeline_with(
                         device,
                         "rain rainfall choose",
-                        &self.module,
+                        &passes.module,
                         entry,
                         &[layout],
                         &constants,
                     )
                 };
                 Pipelines {
-                    begin: pipeline("begin", &self.summing),
-                    note: pipeline("note", &self.summing),
-                    count: pipeline("count", &self.finding),
-                    sum: pipeline("sum", &self.summing),
-                    scan: pipeline("scan", &self.summing),
-                    list: pipeline("list", &self.finding),
-                    list_again: pipeline("list_again", &self.finding),
+                    begin: pipeline("begin", &passes.summing),
+                    note: pipeline("note", &passes.summing),
+                    count: pipeline("count", &passes.finding),
+                    sum: pipeline("sum", &passes.summing),
+                    scan: pipeline("scan", &passes.summing),
+                    list: pipeline("list", &passes.finding),
+                    list_again: pipeline("list_again", &passes.finding),
                 }
             });
         }
@@ -178,6 +206,8 @@ struct BindGroups {
     summing: wgpu::BindGroup,
     finding: wgpu::BindGroup,
     of: [wgpu::Buffer; 12],
+    /// As the key that their layouts are of.
+    thinned: bool,
 }
 
 fn storage(device: &wgpu::Device, label: &str, bytes: u64) -> wgpu::Buffer {
@@ -307,7 +337,9 @@ impl ChoiceGpu {
             &self.noted,
         ]
         .map(Clone::clone);
-        if self.bind_groups.as_ref().is_some_and(|groups| groups.of == buffers) {
+        let thinned = self.key.thinned;
+        let bound = |groups: &BindGroups| groups.of == buffers && groups.thinned == thinned;
+        if self.bind_groups.as_ref().is_some_and(bound) {
             return;
         }
         let group = |layout, bindings: &[(u32, bool)]| {
@@ -324,10 +356,12 @@ impl ChoiceGpu {
                 entries: &entries,
             })
         };
+        let passes = choose.passes(choose.serving(self.key));
         self.bind_groups = Some(BindGroups {
-            summing: group(&choose.summing, &SUMMING),
-            finding: group(&choose.finding, &FINDING),
+            summing: group(&passes.summing, &SUMMING),
+            finding: group(&passes.finding, &FINDING),
             of: buffers,
+            thinned,
         });
     }
 

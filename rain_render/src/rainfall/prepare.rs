@@ -2,11 +2,13 @@
 
 use rain_core::rainfall::DropRecord;
 
-use crate::bindings::{linear_sampler, one_texel, params_entry, sampler_entry, storage_entry, texture_entry};
+use crate::bindings::{
+    linear_sampler, one_texel, params_entry, params_entry_in, sampler_entry, storage_entry, texture_entry,
+};
 use crate::gpu_types::{RainfallView, Streak};
 use crate::guard_band::GuardBand;
 use crate::overlay::{Overlay, OverlayKey};
-use crate::params_space::PARAMS;
+use crate::params_space::{PARAMS, ParamsSpace};
 use crate::quad_indices::{DRAW_BYTES, QuadIndices, draw_words, quads_of_a_draw};
 use crate::rainfall::choose::{Asked, ChoiceGpu, ChoiceTargets, Choose};
 use crate::rainfall::near::near_reaches;
@@ -108,13 +110,14 @@ impl RainfallGpu {
     pub fn new(device: &wgpu::Device) -> Self {
         let depth = wgpu::TextureSampleType::Depth;
         let raster = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let streaks = storage_entry(1, raster, true);
         let even = [
-            params_entry(device, 0, raster, size_of::<RainfallView>()),
-            storage_entry(1, raster, true),
+            params_entry_in(ParamsSpace::Uniform, 0, raster, size_of::<RainfallView>()),
+            streaks,
         ];
-        let draw = Overlay::new(device, "rain rainfall draw", "rainfall_draw", &even)
+        let draw = Overlay::uniform(device, "rain rainfall draw", "rainfall_draw", &even)
             .with_constants(|key| vec![("SOFT", f64::from(key.soft)), ("COVERAGE", f64::from(key.coverage))]);
-        let [view, streaks] = even;
+        let view = params_entry(device, 0, raster, size_of::<RainfallView>());
         let near = Overlay::new(
             device,
             "rain rainfall near",
@@ -324,7 +327,7 @@ impl RainfallViewGpu {
         let environment = view(textures.environment, &gpu.no_environment);
         self.project = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain rainfall project"),
-            layout: &gpu.project.layout,
+            layout: gpu.project.layout(self.needs),
             entries: &[
                 entry(0, self.params.as_entire_binding()),
                 entry(1, self.records.as_entire_binding()),

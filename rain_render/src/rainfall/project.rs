@@ -3,9 +3,10 @@
 
 use std::sync::OnceLock;
 
-use crate::bindings::{compute_pipeline_with, params_entry, sampler_entry, storage_entry, texture_entry};
+use crate::bindings::{compute_pipeline_with, params_entry_in, sampler_entry, storage_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::RainfallView;
+use crate::params_space::ParamsSpace;
 
 /// How drops are tested against the cover map: `COVER` of `shaders/passes/rainfall_project.wgsl`.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -66,23 +67,32 @@ impl ProjectKey {
     }
 }
 
-/// The projection's layout and its pipelines.
+/// The module and its layout, with parameters in one space.
+#[derive(Debug)]
+struct Pass {
+    layout: wgpu::BindGroupLayout,
+    module: wgpu::ShaderModule,
+}
+
+/// The projection's layouts and its pipelines.
 #[derive(Debug)]
 pub(super) struct Project {
-    pub layout: wgpu::BindGroupLayout,
-    module: wgpu::ShaderModule,
+    /// With lamps and panes: only there do loops test parameters alone.
+    looping: Pass,
+    /// Without, where views have pipelines of their own.
+    plain: Option<Pass>,
     /// Views have pipelines of their own.
     apart: bool,
     pipelines: [OnceLock<wgpu::ComputePipeline>; 48],
 }
 
-impl Project {
-    pub fn new(device: &wgpu::Device) -> Self {
+impl Pass {
+    fn new(device: &wgpu::Device, space: ParamsSpace) -> Self {
         let compute = wgpu::ShaderStages::COMPUTE;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("rain rainfall project"),
             entries: &[
-                params_entry(device, 0, compute, size_of::<RainfallView>()),
+                params_entry_in(space, 0, compute, size_of::<RainfallView>()),
                 storage_entry(1, compute, true),
                 storage_entry(2, compute, false),
                 texture_entry(
@@ -107,10 +117,20 @@ impl Project {
                 ),
             ],
         });
-        let project = Self {
+        Self {
             layout,
-            module: compose::shader(device, "rainfall_project"),
-            apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
+            module: compose::shader_in(space, device, "rainfall_project"),
+        }
+    }
+}
+
+impl Project {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let apart = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        let project = Self {
+            looping: Pass::new(device, ParamsSpace::of(device)),
+            plain: apart.then(|| Pass::new(device, ParamsSpace::Uniform)),
+            apart,
             pipelines: [const { OnceLock::new() }; 48],
         };
         if !project.apart {
@@ -124,17 +144,30 @@ impl Project {
         if self.apart { key } else { ProjectKey::EVERYTHING }
     }
 
+    fn pass(&self, key: ProjectKey) -> &Pass {
+        match &self.plain {
+            Some(plain) if !key.lamps && !key.panes => plain,
+            _ => &self.looping,
+        }
+    }
+
+    /// The layout of what a view binds.
+    pub fn layout(&self, key: ProjectKey) -> &wgpu::BindGroupLayout {
+        &self.pass(self.serving(key)).layout
+    }
+
     /// Makes sure that the pipeline exists.
     pub fn prepare(&self, device: &wgpu::Device, key: ProjectKey) {
         let key = self.serving(key);
         if let Some(slot) = self.pipelines.get(key.index()) {
+            let pass = self.pass(key);
             slot.get_or_init(|| {
                 compute_pipeline_with(
                     device,
                     "rain rainfall project",
-                    &self.module,
+                    &pass.module,
                     "project",
-                    &[&self.layout],
+                    &[&pass.layout],
                     &[
                         ("COVER", key.cover as u32 as f64),
                         ("ENVIRONMENT", f64::from(key.environment)),

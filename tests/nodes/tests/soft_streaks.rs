@@ -7,7 +7,7 @@ use rain_render::rainfall::{RainfallGpu, RainfallTextures, RainfallViewGpu, Stre
 
 use crate::cover_parity::{EYE, depth_map, depth_texture, heights, placement};
 use crate::device::{Device, device};
-use crate::field_parity::FieldView;
+use crate::field_parity::{FieldView, half_pair};
 use crate::near_streak::{FORMAT, SIDE, red_of_streaks};
 
 const SEED: u64 = 5;
@@ -150,6 +150,50 @@ fn streaks_fade_before_the_ground_as_each_of_their_places_would() {
     }
     assert!(faded > 0.1 * weight, "{faded} of {weight} faded");
     assert!(off < 0.03 * weight, "{off} of {weight} off");
+}
+
+/// What a streak shows of light 1 at a pixel's middle: as `rain_strip` has it, across and along it.
+fn strip(streak: &Streak, at: Vec2) -> f32 {
+    let [ax, ay, bx, by] = streak.ends;
+    let (head, tail) = (Vec2::new(ax, ay), Vec2::new(bx, by));
+    let width = 2.0 * streak.shape[2];
+    let along = (tail - head).normalize_or(Vec2::Y);
+    let span = ((tail - head).length() + if width > 1.0 { width } else { 0.0 }).max(1.0);
+    let off = at - 0.5 * (head + tail);
+    let inside = |distance: f32, size: f32| (0.5 + 0.5 * size - distance.abs()).clamp(0.0, 1.0);
+    inside(off.perp_dot(along), width) * inside(off.dot(along), span)
+}
+
+#[test]
+fn streaks_of_any_length_cover_each_pixel_as_their_strip_does() {
+    let Some(gpu) = device() else { return };
+    let mut pipelines = RainfallGpu::new(&gpu.device);
+    let view = view();
+    let scene = depth_texture(&gpu, SIDE, &depth_of(&view, &|_, _| 0.0));
+    // On a software device the short ones are triangles, the others quads.
+    for lengths in [8.0..34.0, 38.0..200.0] {
+        let drops = single_drops(&gpu, &pipelines, &view, |s| {
+            // The target's halves have no digits for the faintest.
+            let length = Vec2::new(s.ends[2] - s.ends[0], s.ends[3] - s.ends[1]).length();
+            lengths.contains(&length) && half_pair(s.shares)[0] > 2e-3
+        });
+        assert!(drops.len() >= 6, "{} drops of {lengths:?} px", drops.len());
+        for (drop, streak) in drops.iter().take(6) {
+            let drawn = draw(&gpu, &mut pipelines, &view, drop, &scene, 0.0);
+            let light = streak.light[0] * half_pair(streak.shares)[0];
+            let (mut sum, mut off) = (0.0_f32, 0.0_f32);
+            for (i, drawn) in (0_u32..).zip(&drawn) {
+                let at = Vec2::new((i % VIEW) as f32, (i / VIEW) as f32) + 0.5;
+                let expected = light * strip(streak, at);
+                sum += expected;
+                off = off.max((drawn - expected).abs());
+            }
+            // Corners lie on 1/256 of a pixel; the target's halves have three digits.
+            assert!(off < 0.02 * light, "{off} of {light} off, {:?}", streak.ends);
+            let all: f32 = drawn.iter().sum();
+            assert!((all - sum).abs() < 2e-3 * sum, "{all} and {sum}");
+        }
+    }
 }
 
 #[test]
