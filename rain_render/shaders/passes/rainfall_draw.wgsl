@@ -32,9 +32,10 @@ fn corner(streak: Streak, half: f32, vertex_index: u32) -> EvenVertex {
     var at = rain_shared_corner(vertex_index);
     let path = streak.ends.zw - streak.ends.xy;
     // A band around the view is what software devices have. The triangle holds the strip: three times as wide at its head, it ends
-    // half its length behind its tail, where the quad's other triangle has no area.
+    // half its length behind its tail, where the quad's other triangle has no area. It must not end where all of the draw is clipped.
     let short = select(0.0, SHORT, view.guard_share < 1.0);
-    if (dot(path, path) < short * short) {
+    let beyond = 1.5 * streak.shape.y - 0.5 * streak.shape.x;
+    if (dot(path, path) < short * short && beyond >= 0.0 && beyond <= 1.0) {
         at = select(vec2<f32>(3.0 * at.x, -1.0), vec2<f32>(0.0, 2.0), at.y > 0.0);
     }
     let quad = rain_streak_corner(streak.ends, half, at);
@@ -50,7 +51,7 @@ fn corner(streak: Streak, half: f32, vertex_index: u32) -> EvenVertex {
     let light = vec4<f32>(min(streak.light, vec3<f32>(65000.0)), 1.0) * shares.x;
     let whole = select(light, vec4<f32>(shares.y, 0.0, 0.0, shares.y), COVERAGE);
     return EvenVertex(
-        vec4<f32>(ndc_of(quad.pixel), clamp(mix(streak.shape.x, streak.shape.y, 0.5 + 0.5 * at.y), 0.0, 1.0), 1.0),
+        vec4<f32>(ndc_of(quad.pixel), mix(streak.shape.x, streak.shape.y, 0.5 + 0.5 * at.y), 1.0),
         vec3<f32>(quad.local, gap),
         vec4<u32>(pack2x16float(whole.rg), pack2x16float(whole.ba), bitcast<vec2<u32>>(0.5 + 0.5 * quad.size)),
     );
