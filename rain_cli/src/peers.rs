@@ -218,23 +218,22 @@ fn frames(programs: &Path, count: u32, rounds: u32) -> Result<Vec<Row>, String> 
         scenes = started(programs, count, turns, &mut costs)?;
         left -= turns;
     }
-    let all = &costs;
-    let ours = middle(all[0].iter().map(|cost| cost.cpu_ms))[0];
+    let ours = middle(costs[0].iter().map(|cost| cost.cpu_ms))[0];
     Ok(scenes
         .iter()
         .zip(KINDS)
-        .zip(all)
-        .map(|((scene, kind), costs)| {
-            let cpu_ms = middle(costs.iter().map(|cost| cost.cpu_ms));
+        .zip(&costs)
+        .map(|((scene, kind), own)| {
+            let cpu_ms = middle(own.iter().map(|cost| cost.cpu_ms));
             Row {
                 count,
                 name: kind.to_owned(),
                 shown: scene["shown"].clone(),
-                wall_ms: middle(costs.iter().map(|cost| cost.wall_ms))[0],
+                wall_ms: middle(own.iter().map(|cost| cost.wall_ms))[0],
                 cpu_ms,
                 ratio: cpu_ms[0] / ours,
                 more_ms: Some(middle(
-                    costs.iter().zip(&all[0]).map(|(cost, ours)| cost.cpu_ms - ours.cpu_ms),
+                    own.iter().zip(&costs[0]).map(|(cost, ours)| cost.cpu_ms - ours.cpu_ms),
                 )),
             }
         })

@@ -1,6 +1,7 @@
 //! Where passes read their parameters from.
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 /// What a buffer of parameters is made for: it serves in either space.
 pub(crate) const PARAMS: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::STORAGE);
@@ -47,6 +48,42 @@ impl ParamsSpace {
             Self::Uniform => wgpu::BufferBindingType::Uniform,
             Self::Storage => wgpu::BufferBindingType::Storage { read_only: true },
         }
+    }
+}
+
+/// What a pass has once for each space, made when it is first needed.
+#[derive(Debug)]
+pub(crate) struct BySpace<T> {
+    of_device: ParamsSpace,
+    uniform: OnceLock<T>,
+    storage: OnceLock<T>,
+}
+
+impl<T> BySpace<T> {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self {
+            of_device: ParamsSpace::of(device),
+            uniform: OnceLock::new(),
+            storage: OnceLock::new(),
+        }
+    }
+
+    /// The space of a pass; `branching`: branches or loops of it test parameters alone.
+    pub fn space(&self, branching: bool) -> ParamsSpace {
+        if branching {
+            self.of_device
+        } else {
+            ParamsSpace::Uniform
+        }
+    }
+
+    /// That of a space.
+    pub fn get(&self, space: ParamsSpace, make: impl FnOnce(ParamsSpace) -> T) -> &T {
+        let slot = match space {
+            ParamsSpace::Uniform => &self.uniform,
+            ParamsSpace::Storage => &self.storage,
+        };
+        slot.get_or_init(|| make(space))
     }
 }
 

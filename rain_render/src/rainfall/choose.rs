@@ -18,7 +18,7 @@ use rain_core::rainfall::{
 use crate::bindings::{compute_pipeline_with, params_entry_in, storage_entry};
 use crate::compose;
 use crate::gpu_types::{ChoiceClass, RainfallChoice, RainfallView};
-use crate::params_space::{PARAMS, ParamsSpace};
+use crate::params_space::{BySpace, PARAMS, ParamsSpace};
 use crate::quad_indices::quads_of_a_draw;
 use crate::rainfall::prepare::AGAIN_WORD;
 
@@ -112,10 +112,7 @@ impl Passes {
 /// The layouts and the pipelines.
 #[derive(Debug)]
 pub(super) struct Choose {
-    /// Of what leaves drops out: only there do branches test parameters alone.
-    thinned: Passes,
-    /// Of what does not, where views have pipelines of their own.
-    whole: Option<Passes>,
+    passes: BySpace<Passes>,
     /// Views have pipelines of their own.
     apart: bool,
     pipelines: [OnceLock<Pipelines>; 8],
@@ -123,11 +120,9 @@ pub(super) struct Choose {
 
 impl Choose {
     pub fn new(device: &wgpu::Device) -> Self {
-        let apart = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
         let choose = Self {
-            thinned: Passes::new(device, ParamsSpace::of(device)),
-            whole: apart.then(|| Passes::new(device, ParamsSpace::Uniform)),
-            apart,
+            passes: BySpace::new(device),
+            apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
             pipelines: Default::default(),
         };
         if !choose.apart {
@@ -140,19 +135,18 @@ impl Choose {
         if self.apart { key } else { ChoiceKey::EVERYTHING }
     }
 
-    /// What the pipelines of a view are made of.
-    fn passes(&self, key: ChoiceKey) -> &Passes {
-        match &self.whole {
-            Some(whole) if !key.thinned => whole,
-            _ => &self.thinned,
-        }
+    /// What the pipelines of a view are made of, and their space: only what leaves drops out has branches that test
+    /// parameters alone.
+    fn passes(&self, device: &wgpu::Device, key: ChoiceKey) -> (&Passes, ParamsSpace) {
+        let space = self.passes.space(self.serving(key).thinned);
+        (self.passes.get(space, |space| Passes::new(device, space)), space)
     }
 
     fn prepare(&self, device: &wgpu::Device, key: ChoiceKey) {
         let key = self.serving(key);
         if let Some(slot) = self.pipelines.get(key.index()) {
             slot.get_or_init(|| {
-                let passes = self.passes(key);
+                let (passes, _) = self.passes(device, key);
                 let constants = [
                     ("UNEVEN", f64::from(key.uneven)),
                     ("THINNED", f64::from(key.thinned)),
@@ -206,8 +200,7 @@ struct BindGroups {
     summing: wgpu::BindGroup,
     finding: wgpu::BindGroup,
     of: [wgpu::Buffer; 12],
-    /// As the key that their layouts are of.
-    thinned: bool,
+    space: ParamsSpace,
 }
 
 fn storage(device: &wgpu::Device, label: &str, bytes: u64) -> wgpu::Buffer {
@@ -337,8 +330,8 @@ impl ChoiceGpu {
             &self.noted,
         ]
         .map(Clone::clone);
-        let thinned = self.key.thinned;
-        let bound = |groups: &BindGroups| groups.of == buffers && groups.thinned == thinned;
+        let (passes, space) = choose.passes(device, self.key);
+        let bound = |groups: &BindGroups| groups.of == buffers && groups.space == space;
         if self.bind_groups.as_ref().is_some_and(bound) {
             return;
         }
@@ -356,12 +349,11 @@ impl ChoiceGpu {
                 entries: &entries,
             })
         };
-        let passes = choose.passes(choose.serving(self.key));
         self.bind_groups = Some(BindGroups {
             summing: group(&passes.summing, &SUMMING),
             finding: group(&passes.finding, &FINDING),
             of: buffers,
-            thinned,
+            space,
         });
     }
 

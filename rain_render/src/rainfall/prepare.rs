@@ -327,7 +327,7 @@ impl RainfallViewGpu {
         let environment = view(textures.environment, &gpu.no_environment);
         self.project = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain rainfall project"),
-            layout: gpu.project.layout(self.needs),
+            layout: gpu.project.layout(device, self.needs),
             entries: &[
                 entry(0, self.params.as_entire_binding()),
                 entry(1, self.records.as_entire_binding()),

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use crate::bindings::{compute_pipeline_with, params_entry_in, sampler_entry, storage_entry, texture_entry};
 use crate::compose;
 use crate::gpu_types::RainfallView;
-use crate::params_space::ParamsSpace;
+use crate::params_space::{BySpace, ParamsSpace};
 
 /// How drops are tested against the cover map: `COVER` of `shaders/passes/rainfall_project.wgsl`.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -77,10 +77,7 @@ struct Pass {
 /// The projection's layouts and its pipelines.
 #[derive(Debug)]
 pub(super) struct Project {
-    /// With lamps and panes: only there do loops test parameters alone.
-    looping: Pass,
-    /// Without, where views have pipelines of their own.
-    plain: Option<Pass>,
+    passes: BySpace<Pass>,
     /// Views have pipelines of their own.
     apart: bool,
     pipelines: [OnceLock<wgpu::ComputePipeline>; 48],
@@ -126,11 +123,9 @@ impl Pass {
 
 impl Project {
     pub fn new(device: &wgpu::Device) -> Self {
-        let apart = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
         let project = Self {
-            looping: Pass::new(device, ParamsSpace::of(device)),
-            plain: apart.then(|| Pass::new(device, ParamsSpace::Uniform)),
-            apart,
+            passes: BySpace::new(device),
+            apart: device.adapter_info().device_type == wgpu::DeviceType::Cpu,
             pipelines: [const { OnceLock::new() }; 48],
         };
         if !project.apart {
@@ -144,24 +139,24 @@ impl Project {
         if self.apart { key } else { ProjectKey::EVERYTHING }
     }
 
-    fn pass(&self, key: ProjectKey) -> &Pass {
-        match &self.plain {
-            Some(plain) if !key.lamps && !key.panes => plain,
-            _ => &self.looping,
-        }
+    /// What the pipeline of a view is made of: lamps and panes are loops that test parameters alone.
+    fn pass(&self, device: &wgpu::Device, key: ProjectKey) -> &Pass {
+        let key = self.serving(key);
+        let space = self.passes.space(key.lamps || key.panes);
+        self.passes.get(space, |space| Pass::new(device, space))
     }
 
     /// The layout of what a view binds.
-    pub fn layout(&self, key: ProjectKey) -> &wgpu::BindGroupLayout {
-        &self.pass(self.serving(key)).layout
+    pub fn layout(&self, device: &wgpu::Device, key: ProjectKey) -> &wgpu::BindGroupLayout {
+        &self.pass(device, key).layout
     }
 
     /// Makes sure that the pipeline exists.
     pub fn prepare(&self, device: &wgpu::Device, key: ProjectKey) {
         let key = self.serving(key);
         if let Some(slot) = self.pipelines.get(key.index()) {
-            let pass = self.pass(key);
             slot.get_or_init(|| {
+                let pass = self.pass(device, key);
                 compute_pipeline_with(
                     device,
                     "rain rainfall project",
